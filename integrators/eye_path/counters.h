@@ -16,6 +16,8 @@ class SharedCounters {
         rays_.add(rays);
         tracking_.add(tracking);
     }
+    /// All that others counted.
+    void add(const SharedCounters& others) { add(others.rays_, others.tracking_); }
     /// `media` = false reports no volume counters at all: nothing was spent on them.
     void report(core::Statistics& statistics, bool media) const {
         statistics.rays["closest"] += rays_.closest;

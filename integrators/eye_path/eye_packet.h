@@ -26,8 +26,9 @@ struct EyePacketSettings {
     /// Scattering points a ray: until it has scattered, a path continues to surfaces and leaves points in the
     /// media before them (EyePath::advance_to_surface()). Nothing: distances in media are sampled.
     std::optional<int> scattering_points{};
-    bool records_seen = false;               ///< Lane::seen is filled
-    const core::LitScene* lights = nullptr;  ///< sampled lights, where these are not all
+    bool records_seen = false;                                  ///< Lane::seen is filled
+    const core::LitScene* lights = nullptr;                     ///< sampled lights, where these are not all
+    const lights::ScatteringGuide& guide = lights::no_guide();  ///< of the paths' directions
 };
 
 template <bool Media>
@@ -53,7 +54,7 @@ class EyePacket {
         Lane& l = lanes_[std::size_t(lane)];
         l.sum = {}, l.seen = {}, l.film = eye.film, l.alive = true;
         walk_.rng = eye.rng;
-        l.path.emplace(scene_, settings_.limits, eye, walk_, settings_.lights);
+        l.path.emplace(scene_, settings_.limits, eye, walk_, settings_.lights, settings_.guide);
         if (Media && settings_.scattering_points) l.points.emplace(*settings_.scattering_points);
         l.rng = walk_.rng;
     }

@@ -16,6 +16,7 @@
 #include "integrators/eye_path/scattered_light.h"
 #include "integrators/eye_path/transport_layers.h"
 #include "lights/direct_light/direct_light.h"
+#include "lights/guiding/scattering_guide.h"
 
 namespace mote::integrators {
 
@@ -32,11 +33,13 @@ template <bool Media>
 class EyePath {
   public:
     /// `context` holds the path's generator, which also chooses the channel that drives distances.
-    /// `lights`: the sampled ones, where these are not all.
+    /// `lights`: the sampled ones, where these are not all. `guide`: of its directions.
     EyePath(const core::Scene& scene, const EyePathLimits& limits, const EyeRay& eye,
-            core::WalkContext& context, const core::LitScene* lights = nullptr)
+            core::WalkContext& context, const core::LitScene* lights = nullptr,
+            const lights::ScatteringGuide& guide = lights::no_guide())
         : scene_(scene),
           lights_(lights ? *lights : scene),
+          guide_(guide),
           limits_(limits),
           sampler_(eye.sampler),
           ray_(eye.ray) {
@@ -97,14 +100,25 @@ class EyePath {
     const core::ScatteringVertex& vertex() const { return vertex_; }
     /// Next-event estimation: light of one light sampled for the vertex (lights/direct_light/direct_light.h).
     core::Rgb sample_light(core::WalkContext& context, const lights::LightSampling& how = {}) {
-        return lights::sample_light<Media>(lights_, vertex_, weights_, state_, choices_.x, sampler_.next_2d(),
-                                           context, how);
+        lights::LightConnection connection;
+        if (!begin_light(connection, how)) return core::Rgb(0.0f);
+        if (!connection.map) {
+            ++context.rays.occlusion;
+            if (!lights_.visible(connection.shadow)) return core::Rgb(0.0f);
+        }
+        return finish_light(connection, context, how);
     }
     /// The two halves of sample_light(), between which a packet traces the shadow rays of many paths. False:
     /// no light arrives.
     bool begin_light(lights::LightConnection& connection, const lights::LightSampling& how) {
-        return lights::begin_connection(vertex_, lights_.choose_light(vertex_.light_receiver(), choices_.x),
-                                        sampler_.next_2d(), how, Media, connection);
+        if (!lights::begin_connection(vertex_, lights_.choose_light(vertex_.light_receiver(), choices_.x),
+                                      sampler_.next_2d(), how, Media, connection))
+            return false;
+        const core::DirectSample& light = connection.light;
+        if (!light.delta)
+            connection.pdf_scatter =
+                lights::guided_pdf(guided_, light.wi, connection.pdf_scatter, light.line_density);
+        return true;
     }
     /// Light of a connection that nothing occludes.
     core::Rgb finish_light(const lights::LightConnection& connection, core::WalkContext& context,
@@ -171,18 +185,24 @@ class EyePath {
 
     const core::Scene& scene_;
     const core::LitScene& lights_;
+    const lights::ScatteringGuide& guide_;
     EyePathLimits limits_;
     core::Sampler sampler_;
     core::Ray ray_;
     core::MediumState state_;
     core::PathWeights weights_;
     core::ScatteringVertex vertex_;
-    core::Vec2 choices_{0.0f};  ///< of the light, and of the lobe
+    lights::VmfMixture guided_;  ///< directions of the guide at the vertex
+    core::Vec2 choices_{0.0f};   ///< of the light, and of the lobe
     core::LightReceiver previous_;
     bool connected_ = false;  ///< next-event estimation at `previous_` could find the next light
     bool surface_first_ = true, ends_at_delta_ = false;
     int depth_ = 0, scatterings_ = 0;
-    float eta_ = 1.0f, first_cosine_ = 1.0f, segment_length_ = 0.0f, passed_ = 0.0f;
+    float eta_ = 1.0f;
+    /// Density of its directions over that without a guide. Times the throughput it is what surfaces and
+    /// media let through, which roulette follows: throughput alone is low towards bright light.
+    float guide_ratio_ = 1.0f;
+    float first_cosine_ = 1.0f, segment_length_ = 0.0f, passed_ = 0.0f;
 };
 
 template <bool Media>
@@ -231,6 +251,7 @@ bool EyePath<Media>::arrive_by(const Walk& walk, const core::WalkEvent& event, T
         scatterings_ == limits_.max_scatterings || core::is_black(weights_.throughput))
         return false;
     vertex_ = make_vertex(event, ray_), segment_length_ = event.distance;
+    guide_.find(vertex_, guided_);
     choices_ = sampler_.next_2d();
     return true;
 }
@@ -267,10 +288,14 @@ bool EyePath<Media>::wants_more() const {
 template <bool Media>
 bool EyePath<Media>::scatter(core::WalkContext& context) {
     if (!wants_more()) return false;
-    if (depth_ >= limits_.rr_depth && !survives<Media>(weights_, eta_, depth_, context.rng.next_float()))
+    if (depth_ >= limits_.rr_depth &&
+        !survives<Media>(weights_, core::sqr(eta_) * guide_ratio_, depth_, context.rng.next_float()))
         return false;
-    const auto next = vertex_.sample(choices_.y, sampler_.next_2d(), core::TransportMode::radiance);
-    if (!next || (next->delta && ends_at_delta_)) return false;
+    const auto guided = lights::sample_guided(vertex_, guided_, choices_.y, sampler_.next_2d(),
+                                              core::TransportMode::radiance);
+    if (!guided) return false;
+    const core::ScatterSample* const next = &guided->scattering;
+    if (next->delta && ends_at_delta_) return false;
     if (!next->delta || scatterings_ > 0) {  // mirrors and glass before the first connectable vertex: none
         if (scatterings_ == 0)
             surface_first_ = vertex_.on_surface(), first_cosine_ = vertex_.shading_cosine(next->wi);
@@ -279,7 +304,7 @@ bool EyePath<Media>::scatter(core::WalkContext& context) {
     lights::apply_scattering<Media>(weights_, *next, vertex_.position);
     if (core::is_black(weights_.throughput)) return false;
     if (Media && vertex_.on_surface()) state_ = vertex_.state_towards(state_, next->wi);
-    eta_ *= next->eta;
+    eta_ *= next->eta, guide_ratio_ *= guided->pdf_ratio;
     connected_ = !next->delta, previous_ = vertex_.light_receiver();
     ray_ = core::Ray{vertex_.ray_origin(next->wi), next->wi};
     return true;

@@ -11,9 +11,14 @@ using namespace core;
 
 namespace {
 
+struct SurfacePathSettings {
+    EyePathLimits limits;
+    GuidingSettings guiding;
+};
+
 class Path final : public Integrator {
   public:
-    explicit Path(const EyePathLimits& limits) : settings_{limits} {}
+    explicit Path(const SurfacePathSettings& s) : settings_{.limits = s.limits, .guiding = s.guiding} {}
 
     std::string type() const override { return "path"; }
     std::vector<Layer> layers(const Scene&) const override { return transport_layers(false); }
@@ -28,6 +33,7 @@ class Path final : public Integrator {
                       "path traces surfaces only; volpath renders media");
         else
             plan.leave_out("media", "no code for media runs", "the scene has none");
+        plan_guiding(plan, settings_.guiding);
         plan_choice_of_lights(plan, scene);
         plan_caustics(plan, scene, requirements);
         return plan;
@@ -43,13 +49,16 @@ class Path final : public Integrator {
 }  // namespace
 
 std::shared_ptr<const Integrator> make_path(const EyePathLimits& limits) {
-    return std::make_shared<const Path>(limits);
+    return std::make_shared<const Path>(SurfacePathSettings{limits, {}});
 }
 
 void register_path(Registry& registry) {
-    add_type(registry, Category::integrator, "path", "Unbiased path tracer for surfaces; media are not seen.",
-             eye_path_rows(), R"(<integrator type="path"><integer name="max_depth" value="8"/></integrator>)",
-             [](const EyePathLimits& limits) { return std::make_shared<Path>(limits); });
+    using S = SurfacePathSettings;
+    add_type<S>(registry, Category::integrator, "path",
+                "Unbiased path tracer for surfaces; media are not seen.",
+                {within(&S::limits, eye_path_rows()), within(&S::guiding, guiding_rows())},
+                R"(<integrator type="path"><integer name="max_depth" value="8"/></integrator>)",
+                [](const S& s) { return std::make_shared<Path>(s); });
 }
 
 }  // namespace mote::integrators

@@ -1,6 +1,9 @@
 #include "integrators/path_tracing/path_estimator.h"
 
+#include <chrono>
+
 #include "integrators/eye_path/image_loop.h"
+#include "integrators/path_tracing/guided_paths.h"
 #include "integrators/path_tracing/wavefront.h"
 
 namespace mote::integrators {
@@ -15,11 +18,15 @@ class PathEstimator final : public Estimator {
     PathEstimator(const Scene& scene, const RenderOptions& options, const PathSettings& settings)
         : scene_(scene), settings_(settings), loop_(scene, options) {
         settings_.limits.wanted = options.cells;
-        if (!Media && WavefrontScene::suits(scene, settings_)) wavefront_.emplace(scene, settings_.limits);
+        if (settings_.guiding.mode != Guiding::off) train(options);
+        if (!Media && !guide_ && WavefrontScene::suits(scene, settings_))
+            wavefront_.emplace(scene, settings_.limits);
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
-        return loop_.run(context, image, {settings_.limits}, [&](EyeTask<Media>& task) {
+        const lights::ScatteringGuide& guide = guide_ ? *guide_ : lights::no_guide();
+        const EyePacketSettings eye{.limits = settings_.limits, .guide = guide};
+        return loop_.run(context, image, eye, [&](EyeTask<Media>& task) {
             if (wavefront_) {
                 Wavefront paths(*wavefront_, task.walk());
                 task.trace_all(paths);
@@ -29,13 +36,35 @@ class PathEstimator final : public Estimator {
             task.for_each([&](const PacketPixels&) { trace_paths(scene_, settings_, task.packet()); });
         });
     }
-    void add_statistics(Statistics& statistics) const override { loop_.add_statistics(statistics); }
+    void add_statistics(Statistics& statistics) const override {
+        loop_.add_statistics(statistics);
+        if (settings_.guiding.mode == Guiding::off) return;
+        statistics.seconds["guiding"] += training_seconds_;
+        statistics.values["guided"] = guide_ ? 1.0 : 0.0;
+        if (!guide_) return;
+        statistics.values["guiding_leaves"] +=
+            double(guide_->surfaces().leaves().size() + guide_->media().leaves().size());
+    }
 
   private:
+    void train(const RenderOptions& options) {
+        const auto start = std::chrono::steady_clock::now();
+        guide_ = train_guide<Media>(scene_, options, settings_, loop_.counters());
+        if (settings_.guiding.mode == Guiding::automatic &&
+            !guide_pays<Media>(scene_, options, settings_, *guide_, guided_ray_work(), loop_.counters()))
+            guide_.reset();
+        training_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+    /// Processor time of a guided path's ray over that of an unguided one: the guide's own, and what unguided
+    /// paths gain by wavefronts (docs/methods/guiding.md, "Cost").
+    double guided_ray_work() const { return !Media && WavefrontScene::suits(scene_, settings_) ? 2.2 : 1.1; }
+
     const Scene& scene_;
     PathSettings settings_;
     std::optional<WavefrontScene> wavefront_;  ///< for scenes that it suits
     ImageLoop<Media> loop_;
+    std::unique_ptr<const lights::LearnedGuide> guide_;  ///< of guided paths
+    double training_seconds_ = 0.0;
 };
 
 }  // namespace

@@ -11,20 +11,26 @@
 
 #include "integrators/eye_path/eye_packet.h"
 #include "integrators/path_tracing/equiangular.h"
+#include "integrators/path_tracing/guiding_settings.h"
 
 namespace mote::integrators {
 
 struct PathSettings {
     EyePathLimits limits{};
     float bound = core::infinity;  ///< b [1/m^2]; infinity: the true transport
+    GuidingSettings guiding{};
     /// Lights, if any, that light media by equi-angular sampling instead of next-event estimation at
     /// collisions. Not together with a bound.
     std::shared_ptr<const EquiangularLights> equiangular{};
 };
 
-/// Follows the paths of a packet, which were started, to their ends: Lane::sum is the radiance along each eye
-/// ray, by layer.
 template <bool Media>
-void trace_paths(const core::Scene& scene, const PathSettings& settings, EyePacket<Media>& packet);
+class PathRecorder;
+
+/// Follows the paths of a packet, which were started, to their ends: Lane::sum is the radiance along each eye
+/// ray, by layer. `recorder`, if any, receives what arrives at their vertices.
+template <bool Media>
+void trace_paths(const core::Scene& scene, const PathSettings& settings, EyePacket<Media>& packet,
+                 PathRecorder<Media>* recorder = nullptr);
 
 }  // namespace mote::integrators

@@ -20,11 +20,13 @@ struct VolpathSettings {
     EyePathLimits limits;
     float vpl_bound = 0.0f;  ///< b [1/m^2]; 0: none
     bool equiangular = false;
+    GuidingSettings guiding;
 };
 
 class Volpath final : public Integrator {
   public:
-    explicit Volpath(const VolpathSettings& s) : settings_{s.limits}, equiangular_(s.equiangular) {
+    explicit Volpath(const VolpathSettings& s)
+        : settings_{.limits = s.limits, .guiding = s.guiding}, equiangular_(s.equiangular) {
         if (s.vpl_bound > 0.0f) settings_.bound = s.vpl_bound;
     }
 
@@ -68,6 +70,7 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
     else
         plan.error_unknown.clear();
     plan.run("paths", "one per pixel and pass", "light and scattering directions combined at every vertex");
+    plan_guiding(plan, settings_.guiding);
     plan_media(plan, requirements);
     plan_choice_of_lights(plan, scene);
     plan_medium_lights(plan, requirements);
@@ -82,7 +85,7 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
 }  // namespace
 
 std::shared_ptr<const Integrator> make_volpath(const EyePathLimits& limits, bool equiangular) {
-    return std::make_shared<const Volpath>(VolpathSettings{limits, 0.0f, equiangular});
+    return std::make_shared<const Volpath>(VolpathSettings{limits, 0.0f, equiangular, {}});
 }
 
 void register_volpath(Registry& registry) {
@@ -95,7 +98,8 @@ void register_volpath(Registry& registry) {
              "Bound b on the geometry term of the edge where VPLs connect; 0: none."),
          row("equiangular", &S::equiangular,
              "Light of point and spot lights in media by equi-angular sampling along every ray, instead of "
-             "at collisions.")},
+             "at collisions."),
+         within(&S::guiding, guiding_rows())},
         R"(<integrator type="volpath"><integer name="max_depth" value="-1"/></integrator>)",
         [](const S& s, const Properties& p) {
             if (s.equiangular && s.vpl_bound > 0.0f)

@@ -250,7 +250,7 @@ bool Wavefront::survives(int i) {
     PathWeights weights;
     weights.throughput = throughput_.get(i);
     const float u = rngs_[std::size_t(path_[i])].next_float();
-    if (!integrators::survives<false>(weights, eta_[i], depth_, u)) return false;
+    if (!integrators::survives<false>(weights, sqr(eta_[i]), depth_, u)) return false;
     throughput_.set(i, weights.throughput);
     return true;
 }

@@ -1,0 +1,37 @@
+#include "integrators/path_tracing/guiding_settings.h"
+
+#include <fmt/format.h>
+
+namespace mote::integrators {
+
+using namespace core;
+
+const ParameterList<GuidingSettings>& guiding_rows() {
+    using S = GuidingSettings;
+    static const ParameterList<S> list{
+        row("guiding", &S::mode,
+            {{"off", Guiding::off}, {"automatic", Guiding::automatic}, {"on", Guiding::on}},
+            "Directions of paths also from a field of incident radiance, learned before the first pass; "
+            "automatic: where trial passes find less noise for the same work."),
+        row("guiding_passes", &S::passes, at_least(1), "Training passes of guided paths."),
+        row("guiding_paths", &S::paths, at_least(16), "Paths of a training pass."),
+        row("guiding_leaf_samples", &S::leaf_samples, above(0),
+            "A cell of the field is split once it has received more samples."),
+        row("guiding_memory", &S::memory, above(0, "MiB"),
+            "Largest size of the field; beyond it no cell is split.")};
+    return list;
+}
+
+void plan_guiding(Plan& plan, const GuidingSettings& s) {
+    if (s.mode == Guiding::off)
+        plan.leave_out("guiding", "directions by BSDF and phase function alone", "guiding is off");
+    else
+        plan.run(
+            "guiding",
+            fmt::format("{} training passes of {} paths before the first pass, none of them in the picture",
+                        s.passes, s.paths),
+            s.mode == Guiding::on ? "requested"
+                                  : "kept where trial passes find less noise for the same work");
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,27 @@
+// Settings of guided paths, and their rows.
+#pragma once
+
+#include <cstdint>
+
+#include "core/parameters/add_type.h"
+#include "core/render/plan.h"
+
+namespace mote::integrators {
+
+/// Directions of paths from a field of incident radiance that is learned first (guided_paths.h).
+enum class Guiding : std::uint8_t { off, automatic, on };
+
+struct GuidingSettings {
+    Guiding mode = Guiding::off;
+    int passes = 31;               ///< of training
+    int paths = 65536;             ///< of a training pass
+    double leaf_samples = 8000.0;  ///< a leaf of the field with more is split
+    double memory = 64.0;          ///< of the field [MiB]
+};
+
+const core::ParameterList<GuidingSettings>& guiding_rows();
+
+/// Says what guides paths, and when.
+void plan_guiding(core::Plan& plan, const GuidingSettings& settings);
+
+}  // namespace mote::integrators

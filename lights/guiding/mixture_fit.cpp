@@ -1,0 +1,137 @@
+#include "lights/guiding/mixture_fit.h"
+
+#include <algorithm>
+
+#include "core/math/vectorize.h"
+
+namespace mote::lights {
+
+using core::Vec3, core::Vec3d;
+
+namespace {
+
+constexpr int lobe_count = VmfMixture::capacity;
+constexpr int steps = 3;                 ///< of expectation and maximisation, for each batch
+constexpr double weight_prior = 0.1;     ///< a: effective samples in every lobe
+constexpr double direction_prior = 0.2;  ///< b: effective samples of all directions
+
+/// A direction and the inverse distance of what lies there.
+struct Sight {
+    Vec3 direction;
+    float inverse_distance;
+};
+
+/// Moves the observer from `from` to `to`. Unchanged where the point that is seen lies at `to`.
+Sight by_parallax(const Sight& s, const Vec3& from, const Vec3& to) {
+    const Vec3 seen = s.direction + (from - to) * s.inverse_distance;
+    const float length = glm::length(seen);
+    return length > 1e-3f && std::isfinite(length) ? Sight{seen / length, s.inverse_distance / length} : s;
+}
+
+/// Posterior probability of each lobe for a direction, into g. The largest exponent is taken out: a direction
+/// that no lobe reaches goes to the nearest.
+void responsibilities(const VmfMixture& m, const Vec3& w, float (&g)[lobe_count]) {
+    float exponent[lobe_count];
+    MOTE_INDEPENDENT_LANES
+    for (int k = 0; k < lobe_count; ++k) {
+        const float dx = m.x[k] - w.x, dy = m.y[k] - w.y, dz = m.z[k] - w.z;
+        exponent[k] = -0.5f * m.kappa[k] * (dx * dx + dy * dy + dz * dz);
+    }
+    const float largest = *std::max_element(exponent, exponent + lobe_count);
+    float total = 0.0f;
+    MOTE_INDEPENDENT_LANES
+    for (int k = 0; k < lobe_count; ++k)
+        g[k] = m.weight[k] * m.normalization[k] * exp_of_negative(exponent[k] - largest);
+    for (const float v : g) total += v;
+    for (float& v : g) v /= total;
+}
+
+}  // namespace
+
+void MixtureFit::add(std::span<const GuidingSample> samples) {
+    samples_ += double(samples.size());
+    Sums sums[lobe_count];
+    for (int step = 0; step < steps; ++step) {
+        std::copy(sums_, sums_ + lobe_count, sums);
+        expect(samples, sums);
+        maximise(sums);
+    }
+    std::copy(sums, sums + lobe_count, sums_);
+}
+
+void MixtureFit::expect(std::span<const GuidingSample> samples, Sums (&sums)[lobe_count]) const {
+    for (const GuidingSample& s : samples) {
+        if (!(s.weight > 0.0f)) continue;
+        const Sight seen = by_parallax({s.direction, s.inverse_distance}, s.position, pivot_);
+        float g[lobe_count];
+        responsibilities(mixture_, seen.direction, g);
+        for (int k = 0; k < lobe_count; ++k) {
+            const double w = double(g[k]) * double(s.weight);
+            sums[k].weight += w, sums[k].squares += w * double(s.weight);
+            sums[k].inverse_distance += w * double(seen.inverse_distance);
+            sums[k].direction += w * Vec3d(seen.direction);
+        }
+    }
+}
+
+void MixtureFit::maximise(const Sums (&sums)[lobe_count]) {
+    double weight = 0.0, squares = 0.0;
+    for (const Sums& s : sums) weight += s.weight, squares += s.squares;
+    if (!(weight > 0.0) || !(squares > 0.0)) return;
+    const double n = weight * (weight / squares);
+    for (int k = 0; k < lobe_count; ++k) {
+        const Sums& s = sums[k];
+        VmfLobe lobe = mixture_.lobe(k);
+        const double length = glm::length(s.direction);
+        if (s.weight > 0.0 && s.squares > 0.0 && length > 0.0) {
+            const double effective = s.weight * (s.weight / s.squares);
+            const double cosine = std::min(1.0, length / s.weight);
+            lobe.mean = Vec3(s.direction / length);
+            lobe.kappa = kappa_of_mean_cosine(cosine * effective / (effective + direction_prior));
+            distances_[k] = float(s.inverse_distance / s.weight);
+        }
+        mixture_.set(k, lobe,
+                     float((n * s.weight / weight + weight_prior) / (n + double(lobe_count) * weight_prior)));
+    }
+}
+
+void MixtureFit::scale(double factor) {
+    samples_ *= factor;
+    for (Sums& s : sums_) {
+        s.weight *= factor, s.squares *= factor;
+        s.inverse_distance *= factor, s.direction *= factor;
+    }
+}
+
+MixtureFit MixtureFit::moved_to(const Vec3& pivot) const {
+    MixtureFit moved = *this;
+    moved.pivot_ = pivot;
+    for (int k = 0; k < lobe_count; ++k) {
+        VmfLobe lobe = mixture_.lobe(k);
+        const Sight seen = by_parallax({lobe.mean, distances_[k]}, pivot_, pivot);
+        lobe.mean = seen.direction, moved.distances_[k] = seen.inverse_distance;
+        moved.mixture_.set(k, lobe, mixture_.weight[k]);
+        moved.sums_[k].inverse_distance = sums_[k].weight * double(seen.inverse_distance);
+        moved.sums_[k].direction = glm::length(sums_[k].direction) * Vec3d(lobe.mean);
+    }
+    return moved;
+}
+
+VmfMixture MixtureFit::at(const Vec3& position) const {
+    VmfMixture seen = mixture_;
+    seen.empty = !(light() > 0.0);
+    if (seen.empty) return seen;
+    for (int k = 0; k < lobe_count; ++k) {
+        const Vec3 mean = by_parallax({mixture_.lobe(k).mean, distances_[k]}, pivot_, position).direction;
+        seen.x[k] = mean.x, seen.y[k] = mean.y, seen.z[k] = mean.z;
+    }
+    return seen;
+}
+
+double MixtureFit::light() const {
+    double sum = 0.0;
+    for (const Sums& s : sums_) sum += s.weight;
+    return sum;
+}
+
+}  // namespace mote::lights

@@ -1,0 +1,228 @@
+// Guided paths: the mean of unguided ones on surfaces and in media, and fields that teach the wrong
+// directions change noise only. Densities that leave something out are seen.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "integrators/eye_path/image_loop.h"
+#include "integrators/path_tracing/guided_paths.h"
+#include "tests/integrators/test_scenes.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+
+using namespace mote;
+using namespace mote::core;
+using namespace mote::tests;
+
+namespace {
+
+std::shared_ptr<const Integrator> paths(const std::string& type, const std::string& guiding,
+                                        const std::string& more = "") {
+    return integrator_from(fmt::format(
+        R"(<integrator type="{}"><string name="guiding" value="{}"/><integer name="guiding_passes" value="7"/>
+        <integer name="guiding_paths" value="2048"/><float name="guiding_leaf_samples" value="500"/>{}</integrator>)",
+        type, guiding, more));
+}
+
+void check_equal(const Scene& scene, const std::string& type, std::uint32_t passes,
+                 const std::string& more = "") {
+    const auto guided = render_statistics(scene, *paths(type, "on", more), {8, passes, 5});
+    const auto reference = render_statistics(scene, *paths(type, "off", more), {8, passes, 6});
+    for (const std::string& layer : reference.layers) check_same_mean(guided, layer, reference, layer);
+    check_same_mean(guided, "beauty", reference, "beauty", {1.1});
+    CHECK(guided.non_finite == 0);
+}
+
+/// A guide whose lobes point anywhere, whose density counts as `factor` times what it is.
+class AnyGuide final : public lights::ScatteringGuide {
+  public:
+    explicit AnyGuide(float factor) : factor_(factor) {}
+    void find(const ScatteringVertex& vertex, lights::VmfMixture& lobes) const override {
+        lobes.empty = true;
+        if (!lights::LearnedGuide::guides(vertex)) return;
+        lobes = lights::even_mixture();
+        for (int k = 0; k < 3; ++k)
+            lobes.kappa[k] = 20.0f, lobes.normalization[k] = lights::vmf_normalization(20.0f);
+        for (float& c : lobes.normalization) c *= factor_;
+    }
+
+  private:
+    float factor_;
+};
+
+/// Paths with a guide of a test.
+class PathsOf final : public Integrator {
+  public:
+    explicit PathsOf(const lights::ScatteringGuide& guide) : guide_(guide) {}
+    std::string type() const override { return "paths_of_a_test"; }
+    std::vector<Layer> layers(const Scene& scene) const override {
+        return integrators::transport_layers(scene.has_media());
+    }
+    Plan plan(const Scene&, const Requirements&) const override { return {}; }
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override;
+
+  private:
+    const lights::ScatteringGuide& guide_;
+};
+
+class PathsOfEstimator final : public Estimator {
+  public:
+    PathsOfEstimator(const Scene& scene, const RenderOptions& options, const lights::ScatteringGuide& guide)
+        : scene_(scene), guide_(guide), loop_(scene, options) {}
+    bool pass(const PassContext& context, PassImage& image) override {
+        const integrators::EyePacketSettings eye{.limits = {}, .guide = guide_};
+        return loop_.run(context, image, eye, [&](integrators::EyeTask<true>& task) {
+            task.for_each([&](const integrators::PacketPixels&) {
+                integrators::trace_paths<true>(scene_, {}, task.packet());
+            });
+        });
+    }
+
+  private:
+    const Scene& scene_;
+    const lights::ScatteringGuide& guide_;
+    integrators::ImageLoop<true> loop_;
+};
+
+std::unique_ptr<Estimator> PathsOf::prepare(const Scene& scene, const RenderOptions& options) const {
+    return std::make_unique<PathsOfEstimator>(scene, options, guide_);
+}
+
+const std::string forward_fog = fog("0.5, 1, 2", R"(<phase type="hg"><float name="g" value="0.7"/></phase>)");
+
+}  // namespace
+
+TEST_CASE("Guided paths keep the mean on surfaces", "[guiding][equality]") {
+    for (const std::string& material : {grey, glossy, mixed}) {
+        const auto scene = scene_from(box(material, ""), 16);
+        check_equal(*scene, "path", 3000);
+    }
+}
+
+TEST_CASE("Guided paths keep the mean among panes and bent normals", "[guiding][equality]") {
+    const auto scene = scene_from(leafy_box(""), 16);
+    check_equal(*scene, "path", 3000);
+}
+
+TEST_CASE("Guided paths keep the mean in a homogeneous medium", "[guiding][equality]") {
+    const auto scene = scene_from(box(grey, forward_fog), 16);
+    check_equal(*scene, "volpath", 3000);
+    check_equal(*scene, "volpath", 3000, R"(<float name="vpl_bound" value="4"/>)");
+}
+
+TEST_CASE("Guided paths keep the mean in a heterogeneous medium", "[guiding][equality]") {
+    const auto path = std::filesystem::temp_directory_path() / "mote_guiding.vol";
+    const auto scene = scene_from(box(mixed, smoke_medium(path.string())), 16);
+    check_equal(*scene, "volpath", 3000);
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("A guide of any directions keeps the mean; a density that is not its own does not", "[guiding]") {
+    const auto scene = scene_from(box(mixed, forward_fog), 8);
+    const auto reference =
+        render_statistics(*scene, *integrator_from(R"(<integrator type="volpath"/>)"), {4, 1500, 1});
+    const auto any = render_statistics(*scene, PathsOf(AnyGuide(1.0f)), {4, 1500, 2});
+    check_same_mean(any, "beauty", reference, "beauty", {1.1});
+    // Planted: lobes without their weight in the density.
+    auto wrong = render_statistics(*scene, PathsOf(AnyGuide(1.3f)), {4, 1500, 2});
+    wrong.planted = true;
+    CHECK_FALSE(same_mean(wrong, "beauty", reference, "beauty", OnFailure::nothing).passed);
+}
+
+TEST_CASE("A closed furnace is one with guided paths", "[guiding]") {
+    // Radiance 1 from all walls of a closed box that absorb nothing: E / (1 - rho) with rho = 1/2, E = 1/2.
+    const std::string xml =
+        R"(<scene version="3.0.0"><shape type="cube"><boolean name="flip_normals" value="true"/>
+        <bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="0.5"/></bsdf></bsdf>
+        <emitter type="area"><rgb name="radiance" value="0.5"/></emitter></shape>
+        <sensor type="perspective"><float name="fov" value="60"/><transform name="to_world">
+        <lookat origin="0.1, 0.2, 0.3" target="1, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)";
+    const auto scene = scene_from(xml, 8);
+    check_mean_is(render_statistics(*scene, *paths("path", "on"), {4, 400, 1}), "beauty", 1.0, {1.02});
+}
+
+TEST_CASE("What is learned is where light comes from", "[guiding]") {
+    // In the box the lamp hangs below the ceiling; next-event estimation finds it, so what is left to
+    // directions are lit walls: at the floor they lie in the upper half space.
+    const auto scene = scene_from(box(grey, ""), 16);
+    RenderOptions options;
+    options.width = options.height = 16, options.seed = 3;
+    integrators::PathSettings settings;
+    settings.guiding = {integrators::Guiding::on, 7, 4096, 1000.0, 8.0};
+    integrators::SharedCounters counters;
+    const auto guide = integrators::train_guide<false>(*scene, options, settings, counters);
+    CHECK(guide->surfaces().leaves().size() > 10);
+    CHECK(guide->media().leaves().empty());
+    const lights::VmfMixture floor = guide->surfaces().at({-0.5f, -0.999f, 0.2f});
+    REQUIRE_FALSE(floor.empty);
+    double up = 0.0;
+    Rng rng(1);
+    for (int i = 0; i < 4000; ++i) {
+        const float u = rng.next_float();
+        up += floor.sample(u, rng.next_vec2()).y > 0.0f;
+    }
+    CHECK(up > 3200.0);
+}
+
+TEST_CASE("A black scene and a scene of mirrors have nothing to learn", "[guiding]") {
+    const std::string camera = R"(<sensor type="perspective"/></scene>)";
+    const std::string dark =
+        R"(<scene version="3.0.0"><shape type="sphere"><point name="center" x="0" y="0" z="4"/>
+        <bsdf type="diffuse"><rgb name="reflectance" value="0"/></bsdf></shape><emitter type="point"/>)" +
+        camera;
+    const auto black = render_statistics(*scene_from(dark, 8), *paths("volpath", "on"), {4, 4, 1});
+    CHECK(black.whole[black.layer("beauty")][0].mean == 0.0);
+    const std::string mirror =
+        R"(<scene version="3.0.0"><shape type="sphere"><point name="center" x="0" y="0" z="4"/>
+        <bsdf type="conductor"><string name="material" value="none"/></bsdf></shape><emitter type="constant"/>)" +
+        camera;
+    check_mean_is(render_statistics(*scene_from(mirror, 8), *paths("path", "on"), {4, 16, 1}), "beauty", 1.0);
+}
+
+namespace {
+
+/// The box whose lamp, a small one, shines at the ceiling from close by: all other light comes from a spot
+/// there.
+std::string lamp_upwards() {
+    std::string xml = box(grey, "");
+    const auto replace = [&](const std::string& old, const std::string& with) {
+        xml.replace(xml.find(old), old.size(), with);
+    };
+    replace(R"(<scale value="0.25"/><rotate x="1" angle="90"/>)",
+            R"(<scale value="0.06"/><rotate x="1" angle="-90"/>)");
+    replace(R"(<translate y="0.95"/>)", R"(<translate y="0.9"/>)");
+    return xml;
+}
+
+bool automatic_guides(const Scene& scene) {
+    RenderOptions options;
+    options.width = options.height = 16;
+    const auto integrator =
+        integrator_from(R"(<integrator type="path"><string name="guiding" value="automatic"/>
+        <integer name="guiding_passes" value="15"/><integer name="guiding_paths" value="8192"/></integrator>)");
+    Statistics statistics;
+    integrator->prepare(scene, options)->add_statistics(statistics);
+    return statistics.values.at("guided") > 0.0;
+}
+
+}  // namespace
+
+TEST_CASE("Guided paths are quieter under a bright spot, by far", "[guiding]") {
+    const auto scene = scene_from(lamp_upwards(), 16);
+    const auto noise = [&](const char* guiding) {
+        const auto r = render_statistics(*scene, *paths("path", guiding), {16, 256, 1});
+        return r.whole[r.layer("indirect")][1].variance_of_mean;
+    };
+    const double guided = noise("on"), plain = noise("off");
+    CAPTURE(guided, plain);
+    CHECK(guided < 0.5 * plain);
+}
+
+TEST_CASE("Guiding is automatic where it pays", "[guiding]") {
+    CHECK(automatic_guides(*scene_from(lamp_upwards(), 16)));
+    // Under an even sky, cosines are the best directions.
+    CHECK_FALSE(automatic_guides(*scene_from(
+        R"(<scene version="3.0.0"><shape type="sphere"><point name="center" x="0" y="0" z="4"/><bsdf type="diffuse"/>
+        </shape><emitter type="constant"/><sensor type="perspective"/></scene>)",
+        16)));
+}
