@@ -193,12 +193,15 @@ void PbrtReader::make_named_medium(PbrtText& text, const SourceLocation& where) 
     PbrtObject o = object(text, where, "medium");
     const std::string name = o.type, id = medium_id(name, where);
     o.type = o.text("type", "");
-    attempt([&] {
-        if (media_made_.count(id))
-            throw InputError("the medium '" + printable(name, 60) + "' is defined twice", where);
+    if (!media_made_.insert(id).second)
+        return files_.fault(where, "the medium '" + printable(name, 60) + "' is defined twice",
+                            "the first one counts");
+    try {
         add_pbrt_medium(scene_, id, o, state_.to_world, exposure_, files_);
-        media_made_.insert(id);
-    });
+    } catch (const InputError& error) {
+        files_.fault(error, "a vacuum stands in its place");
+        add_pbrt_vacuum(scene_, id);
+    }
 }
 
 void PbrtReader::material(PbrtText& text, const SourceLocation& where) {

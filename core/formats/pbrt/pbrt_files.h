@@ -18,7 +18,7 @@ class PbrtFiles {
     /// Path of a file that the scene names, relative to the scene's folder. Throws InputError where there is
     /// none.
     std::string find(const std::string& name, const SourceLocation& where);
-    /// The same file as the XML names it: copied into the folder of the conversion where that is requested.
+    /// That file as the XML names it: copied into the folder of the conversion where that is requested.
     std::string use(const std::string& name, const SourceLocation& where);
     /// A name for a new file in the folder: "mesh_12.ply".
     std::string new_name(const std::string& stem, const std::string& extension);

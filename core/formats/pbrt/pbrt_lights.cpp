@@ -57,7 +57,8 @@ struct Light {
 void add_point(const Light& l) {
     pugi::xml_node emitter = l.add("point");
     add_value(emitter, "point", "position", vector_text(l.to_world.point(l.from())));
-    add_rgb(emitter, "intensity", l.color("I", strength(l.object, "power", 4.0 * std::numbers::pi, l.exposure)));
+    add_rgb(emitter, "intensity",
+            l.color("I", strength(l.object, "power", 4.0 * std::numbers::pi, l.exposure)));
 }
 
 void add_distant(const Light& l) {
@@ -123,10 +124,16 @@ void add_projection(const Light& l) {
 void add_infinite(const Light& l) {
     if (l.object.find("portal"))
         l.files.note("portals of infinite lights are ignored: they only guide sampling in closed rooms");
-    if (l.object.find("filename"))
-        return add_pbrt_environment(l.scene, l.object, l.to_world, l.exposure, l.files);
+    if (l.object.find("filename")) {
+        try {
+            return add_pbrt_environment(l.scene, l.object, l.to_world, l.exposure, l.files);
+        } catch (const InputError& error) {
+            l.files.fault(error, "white light stands in its place");
+        }
+    }
     pugi::xml_node emitter = add_object(l.scene, "emitter", "constant");
-    add_rgb(emitter, "radiance", l.color("L", strength(l.object, "illuminance", std::numbers::pi, l.exposure)));
+    add_rgb(emitter, "radiance",
+            l.color("L", strength(l.object, "illuminance", std::numbers::pi, l.exposure)));
 }
 
 }  // namespace

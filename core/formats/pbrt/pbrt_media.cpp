@@ -242,4 +242,8 @@ void add_pbrt_medium(pugi::xml_node scene, const std::string& id, const PbrtObje
     for (const InputError& error : medium.unknown()) files.fault(error, "ignored");
 }
 
+void add_pbrt_vacuum(pugi::xml_node scene, const std::string& id) {
+    add_float(add_object(scene, "medium", "homogeneous", "", id), "scale", 0.0);
+}
+
 }  // namespace mote::core

@@ -1,8 +1,7 @@
 // Files, the table of directives, and the end of a scene.
 #include "core/formats/pbrt/pbrt_reader.h"
 
-#include "core/formats/conversion/scene_xml.h"
-#include "core/formats/pbrt/pbrt_lights.h"
+#include "core/formats/pbrt/pbrt_media.h"
 
 namespace mote::core {
 namespace {
@@ -110,7 +109,7 @@ void PbrtReader::finish() {
         files_.fault(where,
                      "there is no medium '" + printable(requested, 60) + "'" + suggestion(requested, known),
                      "a vacuum stands in its place");
-        add_float(add_object(scene_, "medium", "homogeneous", "", id), "scale", 0.0);
+        add_pbrt_vacuum(scene_, id);
     }
 }
 

@@ -13,7 +13,7 @@ namespace mote::core {
 namespace {
 
 /// Linear RGB of another space to linear sRGB, by rows (primaries and white points of ITU-R BT.2020, SMPTE
-/// RP 431-2 with white D65, and ACES 2065-1 adapted to D65).
+/// RP 431-2 with white D65, and ACES AP0 adapted to D65).
 struct ColorSpace {
     const char* name;
     double rows[3][3];

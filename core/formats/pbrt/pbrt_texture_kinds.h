@@ -1,6 +1,7 @@
 // The kinds of textures that a tree is made of.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "core/film/bitmap.h"
@@ -62,12 +63,12 @@ class PbrtImage final : public PbrtTexture {
 
 class PbrtFunction final : public PbrtTexture {
   public:
-    using Function = std::function<Rgb(const std::vector<Rgb>&)>;
+    using Function = PbrtTextureFunction;
     PbrtFunction(std::vector<PbrtTexturePtr> inputs, Function function)
         : inputs_(std::move(inputs)), function_(std::move(function)) {}
     Rgb value(const glm::dvec2& uv) const override {
-        std::vector<Rgb> values;
-        for (const PbrtTexturePtr& t : inputs_) values.push_back(t->value(uv));
+        std::array<Rgb, 3> values;
+        for (std::size_t i = 0; i < inputs_.size(); ++i) values[i] = inputs_[i]->value(uv);
         return function_(values);
     }
     const PbrtMapping* mapping() const override {

@@ -12,15 +12,14 @@ namespace {
 
 constexpr int max_texels = 2048;  // of a baked picture, along an axis
 
-Rgb mix(const std::vector<Rgb>& v) { return glm::mix(v[0], v[1], v[2]); }
-Rgb product(const std::vector<Rgb>& v) { return v[0] * v[1]; }
+Rgb mix(const std::array<Rgb, 3>& v) { return glm::mix(v[0], v[1], v[2]); }
+Rgb product(const std::array<Rgb, 3>& v) { return v[0] * v[1]; }
 
 }  // namespace
 
 PbrtTexturePtr pbrt_constant(const Rgb& value) { return std::make_shared<PbrtConstant>(value); }
 
-PbrtTexturePtr pbrt_function(std::vector<PbrtTexturePtr> inputs,
-                             std::function<Rgb(const std::vector<Rgb>&)> function) {
+PbrtTexturePtr pbrt_function(std::vector<PbrtTexturePtr> inputs, PbrtTextureFunction function) {
     const bool constant =
         std::all_of(inputs.begin(), inputs.end(), [](const PbrtTexturePtr& t) { return t->constant(); });
     auto texture = std::make_shared<PbrtFunction>(std::move(inputs), std::move(function));
@@ -73,7 +72,7 @@ PbrtTexturePtr PbrtTextures::make_image(const PbrtObject& object) {
                             ? float(pbrt_number(std::string_view(encoding).substr(6), object.where))
                             : 1.0f;
     if (scale == 1.0f && !invert && gamma == 1.0f) return image;
-    return pbrt_function({image}, [=](const std::vector<Rgb>& v) {
+    return pbrt_function({image}, [=](const std::array<Rgb, 3>& v) {
         const Rgb linear = gamma == 1.0f ? v[0] : glm::pow(glm::max(v[0], 0.0f), Rgb(gamma));
         return invert ? glm::max(Rgb(1.0f) - linear * scale, 0.0f) : linear * scale;
     });
@@ -156,11 +155,11 @@ void PbrtTextures::define(const std::string& name, const std::string& value_type
     auto& names = spectrum ? spectra_ : floats_;
     try {
         names[name] = make(object, spectrum);
+        for (const InputError& error : object.unknown()) files_.fault(error, "ignored");
     } catch (const InputError& error) {
         files_.fault(error, "grey stands in its place");
         names[name] = pbrt_constant(Rgb(0.5f));
     }
-    for (const InputError& error : object.unknown()) files_.fault(error, "ignored");
 }
 
 PbrtTexturePtr PbrtTextures::named(const std::string& name, bool spectrum,

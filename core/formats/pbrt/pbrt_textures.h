@@ -4,6 +4,7 @@
 // texel by texel into a new picture.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -50,7 +51,7 @@ class PbrtTextures {
     /// A parameter that is a colour, a number or the name of a texture; null where it is not given.
     PbrtTexturePtr find(const PbrtObject& object, const std::string& name, bool spectrum,
                         bool reflectance = true);
-    /// The same, or a default value.
+    /// find(), or a default value.
     PbrtTexturePtr get(const PbrtObject& object, const std::string& name, double default_value,
                        bool spectrum);
     /// The texture of that name.
@@ -76,9 +77,9 @@ class PbrtTextures {
     std::vector<PbrtTexturePtr> kept_;  ///< so that no two in baked_ have one address
 };
 
-/// A function of textures, value by value.
-PbrtTexturePtr pbrt_function(std::vector<PbrtTexturePtr> inputs,
-                             std::function<Rgb(const std::vector<Rgb>&)> function);
+/// A function of at most three textures, value by value.
+using PbrtTextureFunction = std::function<Rgb(const std::array<Rgb, 3>&)>;
+PbrtTexturePtr pbrt_function(std::vector<PbrtTexturePtr> inputs, PbrtTextureFunction function);
 PbrtTexturePtr pbrt_constant(const Rgb& value);
 
 }  // namespace mote::core

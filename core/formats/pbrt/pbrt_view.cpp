@@ -92,9 +92,9 @@ Window window_of(const PbrtObject& camera, double aspect, PbrtFiles& files) {
     if (std::fabs(camera.number("frameaspectratio", aspect) - aspect) > 1e-3)
         files.fault(camera.where, "pixels that are not square have no counterpart here", "they are square");
     const std::vector<double> w = camera.numbers("screenwindow");
-    if (w.empty()) return {1.0, std::fmax(aspect, 1.0), Vec3d(0.0)};
-    if (w.size() != 4 || !(w[1] > w[0] && w[3] > w[2]))
-        throw InputError("a screenwindow is x0 x1 y0 y1", camera.where);
+    const bool given = w.size() == 4 && w[1] > w[0] && w[3] > w[2];
+    if (!w.empty() && !given) files.fault(camera.where, "a screenwindow is x0 x1 y0 y1", "ignored");
+    if (!given) return {1.0, std::fmax(aspect, 1.0), Vec3d(0.0)};
     const double half_width = 0.5 * (w[1] - w[0]), half_height = 0.5 * (w[3] - w[2]);
     if (std::fabs(half_width / half_height / aspect - 1.0) > 1e-3)
         files.fault(camera.where, "pixels that are not square have no counterpart here", "they are square");
@@ -108,7 +108,7 @@ void add_perspective(pugi::xml_node sensor, const PbrtObject& camera, const Wind
     if (glm::length(window.centre) > 1e-6)
         files.fault(camera.where, "a screenwindow off the axis has no counterpart here", "it is centred");
     const double half = std::atan(window.half_short * std::tan(0.5 * glm::radians(fov)));
-    add_float(sensor, "fov", glm::degrees(2.0 * half));
+    add_float(sensor, "fov", window.half_short == 1.0 ? fov : glm::degrees(2.0 * half));
     add_value(sensor, "string", "fov_axis", "smaller");
     const double radius = camera.number("lensradius", 0.0), distance = camera.number("focaldistance", 1e6);
     if (!(radius > 0.0)) return;
