@@ -180,13 +180,17 @@ void check_values(openvdb::FloatGrid& grid, ValueCheck& check) {
         if (!(*tile >= 0.0f && std::isfinite(*tile))) tile.setValue(check(*tile, tile.getCoord()));
 }
 
-/// A grid of a NanoVDB file, in single, half or quantized precision.
+/// A grid of a NanoVDB file.
 openvdb::GridBase::Ptr read_nano_grid(const Request& request) {
     std::string names;
-    for (const auto& grid : nanovdb::io::readGridMetaData(request.path)) {
-        if (grid.gridName == request.grid_name)
-            return nanovdb::nanoToOpenVDB(nanovdb::io::readGrid(request.path, grid.gridName), 0);
-        names += (names.empty() ? "grids present: " : ", ") + clip(grid.gridName, 60);
+    for (const auto& data : nanovdb::io::readGridMetaData(request.path)) {
+        names += (names.empty() ? "grids present: " : ", ") + clip(data.gridName, 60);
+        if (data.gridName != request.grid_name) continue;
+        const auto handle = nanovdb::io::readGrid(request.path, data.gridName);
+        if (const auto* grid = handle.grid<float>()) return nanovdb::nanoToOpenVDB(*grid);
+        if (const auto* grid = handle.grid<nanovdb::Fp16>()) return nanovdb::nanoToOpenVDB(*grid);
+        if (const auto* grid = handle.grid<nanovdb::FpN>()) return nanovdb::nanoToOpenVDB(*grid);
+        throw Refusal("grid '" + clip(data.gridName, 60) + "' holds neither float, Fp16 nor FpN");
     }
     throw Refusal("no grid named '" + clip(request.grid_name, 60) + "'; " +
                   (names.empty() ? "the file holds no grid" : clip(names, 400)));

@@ -15,6 +15,7 @@ class PbrtFiles {
               ConvertedScene& scene)
         : path_(std::move(path)), output_(folder), options_(options), scene_(scene) {}
 
+    const std::string& scene() const { return path_; }
     /// Path of a file that the scene names, relative to the scene's folder. Throws InputError where there is
     /// none.
     std::string find(const std::string& name, const SourceLocation& where);

@@ -33,12 +33,6 @@ void PbrtMaterials::add_named(const std::string& name, PbrtObject object) {
         throw InputError("the material '" + printable(name, 60) + "' is defined twice", object.where);
 }
 
-bool PbrtMaterials::is_interface(const std::string& id) const {
-    const auto it = objects_.find(id);
-    return it != objects_.end() &&
-           (it->second.type == "interface" || it->second.type.empty() || it->second.type == "none");
-}
-
 std::string PbrtMaterials::with_holes(const std::string& id, const PbrtTexturePtr& opacity) {
     for (const auto& [other, holes] : holes_)
         if (holes.id == id && holes.opacity == opacity) return other;

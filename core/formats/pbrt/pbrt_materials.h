@@ -22,8 +22,6 @@ class PbrtMaterials {
     /// Writes all materials that use() named.
     void write(pugi::xml_node scene);
     void use(const std::string& id) { used_.insert(id); }
-    /// True for id's whose material is the boundary of a medium alone.
-    bool is_interface(const std::string& id) const;
 
   private:
     struct Roughness {

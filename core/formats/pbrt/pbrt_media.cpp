@@ -68,6 +68,9 @@ void Writer::add_grid(pugi::xml_node medium, const char* name, const std::vector
                   to_world * Transform(glm::scale(glm::translate(glm::dmat4(1.0), p0), p1 - p0)));
 }
 
+/// Up to the rounding of spectra.
+bool is_grey(const Rgb& c) { return max_component(c) - min_component(c) < 1e-3f * max_component(c); }
+
 /// Extinction and albedo of a density that is multiplied by two colours.
 struct Coefficients {
     double scale;  ///< largest component of the extinction
@@ -110,7 +113,7 @@ void add_density(const Writer& w, pugi::xml_node medium, const std::vector<float
     const Coefficients c = coefficients(w);
     add_float(medium, "scale", c.scale);
     add_rgb(medium, "albedo", c.albedo);
-    if (min_component(c.sigma_t) == 1.0f) return w.add_grid(medium, "sigma_t", density, 1, n);
+    if (is_grey(c.sigma_t)) return w.add_grid(medium, "sigma_t", density, 1, n);
     std::vector<float> colored;
     for (const float d : density)
         for (int i = 0; i < 3; ++i) colored.push_back(d * c.sigma_t[i]);
@@ -195,7 +198,7 @@ void add_vdb(const Writer& w) {
     if (!file) throw InputError("the medium 'nanovdb' needs a filename", w.object.where);
     const std::string name = w.files.use(w.object.text("filename", ""), file->where);
     const Coefficients c = coefficients(w);
-    if (min_component(c.sigma_t) < 1.0f)
+    if (!is_grey(c.sigma_t))
         w.files.fault(w.object.where, "the extinction of a VDB grid has one value here",
                       "the mean of its colour counts");
     const auto grid = [&](pugi::xml_node medium, const char* role, const std::string& grid_name) {

@@ -94,7 +94,7 @@ void PbrtReader::read(const std::string& file) {
 }
 
 void PbrtReader::finish() {
-    if (!in_world_) throw InputError("the scene has no WorldBegin", view_.camera.where);
+    if (!in_world_) throw InputError("the scene has no WorldBegin", {files_.scene(), 0});
     if (!saved_.empty()) files_.note("an AttributeBegin or ObjectBegin has no end");
     shapes_.finish();
     materials_.write(scene_);

@@ -194,12 +194,14 @@ PbrtTexturePtr PbrtTextures::picture(const std::string& file, const SourceLocati
     return std::make_shared<PbrtImage>(std::move(s));
 }
 
-std::string PbrtTextures::bake(const PbrtTexture& texture, const PbrtMapping& mapping) {
+std::string PbrtTextures::bake(const PbrtTexture& texture, const PbrtMapping& mapping, bool reflectance) {
     const int n = std::min(texture.texels(), max_texels);
     std::vector<Rgb> pixels;
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i)
             pixels.push_back(texture.value(mapping.invert({(i + 0.5) / n, 1.0 - (j + 0.5) / n})));
+    if (reflectance)
+        for (Rgb& pixel : pixels) pixel = glm::clamp(pixel, 0.0f, 1.0f);  // as pbrt does where it is used
     ImageChannels image;
     image.width = image.height = n;
     image.add_rgb("", pixels);
@@ -218,8 +220,9 @@ void PbrtTextures::add(pugi::xml_node parent, const std::string& name, const Pbr
     const PbrtMapping mapping = *texture->mapping();
     if (!texture->only(mapping))
         files_.note("textures of different mappings are combined: the result repeats with the first one's");
-    std::string& file = baked_[texture.get()];
-    if (file.empty()) file = bake(*texture, mapping), kept_.push_back(texture);
+    const bool reflectance = !number && std::string_view(parent.name()) == "bsdf";
+    std::string& file = baked_[{texture.get(), reflectance}];
+    if (file.empty()) file = bake(*texture, mapping, reflectance), kept_.push_back(texture);
     PbrtImage::Settings s;
     s.mapping = mapping, s.in_xml = file;
     PbrtImage(std::move(s)).add(parent, name);

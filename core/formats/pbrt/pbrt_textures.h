@@ -69,11 +69,11 @@ class PbrtTextures {
     PbrtTexturePtr make_pattern(const PbrtObject& object, bool spectrum);
     PbrtTexturePtr replaced(const PbrtObject& object, const std::string& done, PbrtTexturePtr by);
     PbrtMapping mapping_of(const PbrtObject& object);
-    std::string bake(const PbrtTexture& texture, const PbrtMapping& mapping);
+    std::string bake(const PbrtTexture& texture, const PbrtMapping& mapping, bool reflectance);
 
     PbrtFiles& files_;
     std::map<std::string, PbrtTexturePtr> floats_, spectra_;
-    std::map<const PbrtTexture*, std::string> baked_;
+    std::map<std::pair<const PbrtTexture*, bool>, std::string> baked_;  ///< as reflectance, or not
     std::vector<PbrtTexturePtr> kept_;  ///< so that no two in baked_ have one address
 };
 

@@ -78,7 +78,7 @@ TEST_CASE("Faults of pbrt scenes name their line", "[pbrt]") {
     CHECK(fault("LightSource \"point\" \"spectrum I\" \"stdillum-D66\"") ==
           "scene.pbrt:5: there is no spectrum 'stdillum-D66', and no file of that name (did you mean "
           "'stdillum-D65'?)");
-    CHECK(fault("Material \"hair\"") == "");  // not used: never converted
+    CHECK(fault("AttributeBegin Material \"hair\" AttributeEnd") == "");  // not used: never converted
     CHECK(fault("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]") ==
           "scene.pbrt:5: an index of the mesh names a vertex that is not there");
     CHECK(fault("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1]") ==
@@ -94,9 +94,9 @@ TEST_CASE("What breaks the grammar of pbrt is an error with its line", "[pbrt]")
     CHECK(fault("Shape \"sphere\" \"radius\" 1") ==
           "scene.pbrt:5: 'radius' is not of the form \"type name\"");
     CHECK(fault("Shape \"sphere") == "scene.pbrt:5: a string does not end");
-    CHECK(fault("\"Shape\"") == "scene.pbrt:5: a directive is expected, not the string 'Shape'");
+    CHECK(fault("Identity \"Shape\"") == "scene.pbrt:5: a directive is expected, not the string 'Shape'");
     CHECK(fault("WorldBegin") == "scene.pbrt:5: WorldBegin stands twice");
-    CHECK(PbrtFolder().error("Camera \"perspective\"\n") == "scene.pbrt:1: the scene has no WorldBegin");
+    CHECK(PbrtFolder().error("Camera \"perspective\"\n") == "scene.pbrt: the scene has no WorldBegin");
 }
 
 TEST_CASE("All faults of a pbrt scene are reported, and leniency replaces what is at fault", "[pbrt]") {

@@ -57,8 +57,8 @@ TEST_CASE("Holes, displacement and patterns of pbrt become masks, bumps and pict
     const std::string chess = "Texture \"c\" \"float\" \"checkerboard\" \"float uscale\" 4 ";
     CHECK_THAT(xml_of(chess + "Attribute \"shape\" \"texture alpha\" \"c\""),
                ContainsSubstring("type=\"mask\""));
-    CHECK_THAT(xml_of("Attribute \"shape\" \"float alpha\" .3"),
-               ContainsSubstring("name=\"opacity\" value=\"0.3\""));
+    CHECK_THAT(xml_of("Attribute \"shape\" \"float alpha\" .25"),
+               ContainsSubstring("name=\"opacity\" value=\"0.25\""));
     CHECK_THAT(
         xml_of(chess +
                "Texture \"b\" \"float\" \"bilerp\" Material \"diffuse\" \"texture displacement\" \"b\""),
