@@ -10,6 +10,13 @@ namespace {
 
 constexpr std::size_t max_states = 10'000;  // of AttributeBegin inside of AttributeBegin
 
+/// Without the rounding errors that an inverse leaves in the row of perspective.
+Transform affine(const glm::dmat4& m) {
+    glm::dmat4 a = m / m[3][3];
+    a[0][3] = a[1][3] = a[2][3] = 0.0;
+    return Transform(a);
+}
+
 }  // namespace
 
 /// An object that cannot be read is left out.
@@ -61,7 +68,8 @@ glm::dmat4 PbrtReader::matrix(PbrtText& text) {
     if (text.require("']'").text != "]") throw InputError("']' is expected after 16 numbers", text.where());
     glm::dmat4 m;
     for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = n[std::size_t(i)];  // column by column
-    return m;
+    if (m[3][3] == 0.0) throw InputError("a matrix is no affine transform", text.where());
+    return affine(m).matrix;
 }
 
 void PbrtReader::active_transform(PbrtText& text, const SourceLocation& where) {
@@ -100,7 +108,7 @@ void PbrtReader::attribute_end(PbrtText&, const SourceLocation& where) {
 
 void PbrtReader::camera(PbrtText& text, const SourceLocation& where) {
     view_.camera = object(text, where);
-    view_.camera_to_world = state_.to_world.inverse();
+    view_.camera_to_world = affine(state_.to_world.inverse().matrix);
     view_.medium = state_.outside;
     coordinate_systems_["camera"] = view_.camera_to_world;
 }
@@ -180,7 +188,7 @@ void PbrtReader::look_at(PbrtText& text, const SourceLocation& where) {
     const Vec3d x = glm::normalize(right), z = glm::normalize(forward), y = glm::cross(z, x);
     const glm::dmat4 camera_to_world(glm::dvec4(x, 0), glm::dvec4(y, 0), glm::dvec4(z, 0),
                                      glm::dvec4(eye, 1));
-    concatenate(glm::inverse(camera_to_world));
+    concatenate(affine(glm::inverse(camera_to_world)).matrix);
 }
 
 void PbrtReader::make_named_material(PbrtText& text, const SourceLocation& where) {

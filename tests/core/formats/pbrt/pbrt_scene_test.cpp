@@ -140,6 +140,16 @@ TEST_CASE("pbrt cameras: fov of the shorter axis, screen window, orthographic, l
           "scene.pbrt:1: the camera 'spherical' has no counterpart here");
 }
 
+TEST_CASE("A camera turned by rounded numbers has no row of perspective", "[pbrt]") {
+    const PbrtFolder folder;
+    const std::string scene =
+        pbrt_world("Shape \"sphere\"",
+                   "Transform [ 4.37113e-8 0 -1 -1e-9 0.6 0.8 0 0 -0.8 0.6 3.3e-9 0 0.1 -3.5 28.2792 1 ]\n"
+                   "Camera \"perspective\"");
+    CHECK(folder.error(scene) == "");
+    CHECK(folder.convert(scene).xml.find(" 0 0 0 1\"") != std::string::npos);
+}
+
 TEST_CASE("Exposure time and sensitivity are a factor on light", "[pbrt]") {
     const PbrtFolder folder;
     std::string scene = square("Material \"diffuse\"");
