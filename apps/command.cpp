@@ -255,9 +255,10 @@ int parse_and_run(int argc, char** argv) {
 
     ConvertArguments convert;
     CLI::App& convert_app =
-        *app.add_subcommand("convert", "Convert a picture to EXR or PNG, or a glTF scene to XML");
+        *app.add_subcommand("convert", "Convert a picture to EXR or PNG, or a glTF or pbrt scene to XML");
     convert_app
-        .add_option("IN", convert.input, "EXR, PNG, JPEG, HDR, PNM, PFM, BMP or TGA; or a scene: glTF, GLB")
+        .add_option("IN", convert.input,
+                    "EXR, PNG, JPEG, HDR, PNM, PFM, BMP or TGA; or a scene: glTF, GLB, pbrt")
         ->required();
     convert_app
         .add_option(

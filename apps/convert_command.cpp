@@ -1,4 +1,4 @@
-// mote convert: pictures to EXR or PNG, glTF scenes to XML (convert_scene.cpp), sequences to films
+// mote convert: pictures to EXR or PNG, glTF and pbrt scenes to XML (convert_scene.cpp), sequences to films
 // (convert_sequence.cpp).
 #include <cmath>
 #include <cstdio>
@@ -7,8 +7,8 @@
 #include "apps/frame_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
-#include "core/formats/gltf/gltf_scene.h"
 #include "core/formats/pictures/image_file.h"
+#include "core/formats/xml/converted_scenes.h"
 #include "core/objects/error.h"
 #include "session/output_files.h"
 
@@ -19,14 +19,15 @@ using core::ImageChannels;
 
 int convert_command(const ConvertArguments& arguments) {
     const std::string kind = extension_of(arguments.output);
-    if (kind == ".xml" || core::is_gltf(arguments.input)) return convert_scene(arguments);
+    if (kind == ".xml" || core::is_foreign_scene(arguments.input)) return convert_scene(arguments);
     if (arguments.lenient || !arguments.defines.empty())
         throw UsageError("--lenient and -D are for scenes, not for pictures");
     if (is_film(kind) && names_frames(arguments.input)) return convert_sequence(arguments);
     if (kind != ".exr" && kind != ".png")
-        throw UsageError("'" + core::printable(arguments.output) +
-                         "' ends in neither .exr nor .png (nor, for a glTF scene, .xml; for frames/####.exr, "
-                         ".mp4, .webm, .mov or .gif)");
+        throw UsageError(
+            "'" + core::printable(arguments.output) +
+            "' ends in neither .exr nor .png (nor, for a glTF or pbrt scene, .xml; for frames/####.exr, "
+            ".mp4, .webm, .mov or .gif)");
     check_outputs(std::vector<NamedFile>{{"the result", arguments.output}},
                   std::vector<NamedFile>{{"the picture that is converted,", arguments.input}});
     const Bitmap bitmap = read_picture(arguments.input, arguments.layer).bitmap;

@@ -1,12 +1,13 @@
-// mote convert SCENE.gltf SCENE.xml: the scene in our language, and a folder with its meshes and pictures.
+// mote convert SCENE.gltf SCENE.xml (or SCENE.pbrt): the scene in our language, and a folder with its meshes
+// and pictures.
 #include <cstdio>
 #include <filesystem>
 
 #include "apps/command.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
-#include "core/formats/gltf/scratch_folder.h"
-#include "core/formats/xml/gltf_loader.h"
+#include "core/formats/conversion/scratch_folder.h"
+#include "core/formats/xml/converted_scenes.h"
 #include "session/output_files.h"
 
 namespace mote::apps {
@@ -35,23 +36,23 @@ void move_files(const fs::path& from, const fs::path& to, const std::vector<std:
 }  // namespace
 
 int convert_scene(const ConvertArguments& arguments) {
-    if (!core::is_gltf(arguments.input) || extension_of(arguments.output) != ".xml")
-        throw UsageError("a scene is converted from .gltf or .glb to .xml, not from '" +
+    if (!core::is_foreign_scene(arguments.input) || extension_of(arguments.output) != ".xml")
+        throw UsageError("a scene is converted from .gltf, .glb or .pbrt to .xml, not from '" +
                          core::printable(arguments.input) + "' to '" + core::printable(arguments.output) +
                          "'");
     if (arguments.half || arguments.exposure != 0.0f || !arguments.layer.empty())
         throw UsageError("--half, --exposure and --layer are for pictures, not for scenes");
     require_input(arguments.input);
     auto defines = split_defines(arguments.defines);
-    core::GltfOptions options = core::take_gltf_options(defines);
+    core::ConversionOptions options = core::take_conversion_options(arguments.input, defines);
     if (!defines.empty())
         throw UsageError("-D " + core::printable(defines.front().first) +
-                         ": a conversion takes camera=NAME and emission=FACTOR");
+                         ": a conversion of glTF takes camera=NAME and emission=FACTOR, one of pbrt nothing");
     const fs::path folder = fs::path(arguments.output).replace_extension().string() + "_files";
-    options.prefix = folder.filename().string() + "/", options.copy_pictures = true;
+    options.prefix = folder.filename().string() + "/", options.copy_files = true;
     const core::ScratchFolder scratch;  // nothing is left of a scene that is refused
-    const core::GltfScene scene = core::convert_gltf(arguments.input, scratch.path(), options);
-    for (const std::string& line : core::gltf_approximations(scene, arguments.input, arguments.lenient))
+    const core::ConvertedScene scene = core::convert_foreign_scene(arguments.input, scratch.path(), options);
+    for (const std::string& line : core::approximations_of(scene, arguments.lenient))
         std::fputs(("mote: --lenient: " + line + "\n").c_str(), stderr);
     for (const std::string& note : scene.report.notes)
         std::fputs(("mote: warning: " + arguments.input + ": " + note + "\n").c_str(), stderr);

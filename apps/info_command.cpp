@@ -9,7 +9,7 @@
 #include "apps/command.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
-#include "core/formats/gltf/gltf_scene.h"
+#include "core/formats/xml/converted_scenes.h"
 #include "core/formats/pictures/exr_preflight.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/geometry/triangle_mesh.h"
@@ -161,7 +161,7 @@ int info_command(const InfoArguments& arguments) {
     if (!std::filesystem::exists(path, ignored)) throw core::InputError("there is no such file", {path, 0});
     require_input(path);
     const std::string extension = extension_of(path);
-    if (extension == ".xml" || core::is_gltf(path))
+    if (extension == ".xml" || core::is_foreign_scene(path))
         describe_scene(path, arguments);
     else if (extension == ".vdb")
         describe_vdb(path);

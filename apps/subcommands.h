@@ -142,7 +142,7 @@ int convert_command(const ConvertArguments& arguments);
 /// The part of it that makes a film of a sequence, and the names of such films.
 int convert_sequence(const ConvertArguments& arguments);
 bool is_film(const std::string& extension);
-/// The part of it that turns a glTF scene into XML.
+/// The part of it that turns a glTF or pbrt scene into XML.
 int convert_scene(const ConvertArguments& arguments);
 int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);

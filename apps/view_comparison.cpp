@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/formats/gltf/scratch_folder.h"
+#include "core/formats/conversion/scratch_folder.h"
 #include "core/formats/pictures/image_file.h"
 #include "session/output_files.h"
 #include "session/reference_metadata.h"

@@ -7,6 +7,8 @@ function(mote_openvdb_program name source)
 endfunction()
 
 mote_openvdb_program(mote_grid_reader media/main_grid_reader.cpp)
+target_compile_definitions(mote_grid_reader PRIVATE NANOVDB_USE_ZIP)
+target_link_libraries(mote_grid_reader PRIVATE ZLIB::ZLIB)
 if(MOTE_SANITIZE)
   target_compile_definitions(mote_grid_reader PRIVATE MOTE_SANITIZED)
 endif()

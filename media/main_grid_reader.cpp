@@ -1,9 +1,11 @@
-// mote_grid_reader: reads OpenVDB files on behalf of mote, in a process that may crash.
+// mote_grid_reader: reads OpenVDB and NanoVDB files on behalf of mote, in a process that may crash.
 //
 // The only file of the project that includes OpenVDB to read files. It limits its own memory and time before
 // it touches the file, reads without delayed loading, checks kind and values, converts to NanoVDB, and writes
 // the answer into an inherited memory file (grid_reader_protocol.h). It leaves with _exit(), because the tree
 // of a damaged file may crash in its destructor.
+#include <nanovdb/util/IO.h>
+#include <nanovdb/util/NanoToOpenVDB.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
@@ -178,13 +180,35 @@ void check_values(openvdb::FloatGrid& grid, ValueCheck& check) {
         if (!(*tile >= 0.0f && std::isfinite(*tile))) tile.setValue(check(*tile, tile.getCoord()));
 }
 
+/// A grid of a NanoVDB file.
+openvdb::GridBase::Ptr read_nano_grid(const Request& request) {
+    std::string names;
+    for (const auto& data : nanovdb::io::readGridMetaData(request.path)) {
+        names += (names.empty() ? "grids present: " : ", ") + clip(data.gridName, 60);
+        if (data.gridName != request.grid_name) continue;
+        const auto handle = nanovdb::io::readGrid(request.path, data.gridName);
+        if (const auto* grid = handle.grid<float>()) return nanovdb::nanoToOpenVDB(*grid);
+        if (const auto* grid = handle.grid<nanovdb::Fp16>()) return nanovdb::nanoToOpenVDB(*grid);
+        if (const auto* grid = handle.grid<nanovdb::FpN>()) return nanovdb::nanoToOpenVDB(*grid);
+        throw Refusal("grid '" + clip(data.gridName, 60) + "' holds neither float, Fp16 nor FpN");
+    }
+    throw Refusal("no grid named '" + clip(request.grid_name, 60) + "'; " +
+                  (names.empty() ? "the file holds no grid" : clip(names, 400)));
+}
+
 void read_grid(const Request& request) {
     json document, warnings = json::array();
-    openvdb::io::File file(request.path);
-    file.open(false);
-    const std::string name = choose_grid(file, request.grid_name, warnings);
+    std::string name = request.grid_name;
+    openvdb::GridBase::Ptr base;
+    if (request.path.ends_with(".nvdb")) {
+        base = read_nano_grid(request);
+    } else {
+        openvdb::io::File file(request.path);
+        file.open(false);
+        name = choose_grid(file, name, warnings);
+        base = file.readGrid(name);
+    }
     const std::string named = "grid '" + clip(name, 60) + "'";
-    const auto base = file.readGrid(name);
     if (!base) throw Refusal(named + " cannot be read");
     if (!base->transform().isLinear())
         throw Refusal(named + " has a frustum transform; only linear ones are read");

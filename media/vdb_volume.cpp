@@ -94,7 +94,8 @@ std::shared_ptr<VdbVolume> make_vdb(const VdbSettings& s, const core::Properties
 void register_vdb_volume(core::Registry& registry) {
     core::add_type(
         registry, core::Category::volume, "vdbvolume",
-        "A fog volume of an OpenVDB file (float, half, double, integers): trilinear, its background outside.",
+        "A fog volume of an OpenVDB file (float, half, double, integers) or a NanoVDB one (.nvdb; float, "
+        "Fp16, FpN): trilinear, its background outside.",
         vdb_rows(), R"(<volume type="vdbvolume"><string name="filename" value="smoke.vdb"/></volume>)",
         [kept = std::make_shared<KeptGrids>()](const VdbSettings& s, const core::Properties& p) {
             return make_vdb(s, p, *kept);

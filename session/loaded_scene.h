@@ -41,7 +41,7 @@ std::vector<std::string> frame_before_settings(const SceneChanges& changes);
 /// A scene that may be rendered, by several threads at once. Copies share it.
 class LoadedScene {
   public:
-    /// All throw InputError, or SceneErrors with all that is wrong. A path may name XML, glTF or GLB.
+    /// All throw InputError, or SceneErrors with all that is wrong. A path may name XML, glTF, GLB or pbrt.
     static LoadedScene from_file(const std::string& path, const SceneChanges& changes = {});
     /// By a registry that several scenes share, for it keeps meshes that they have in common.
     static LoadedScene from_file(const std::string& path, const SceneChanges& changes,

@@ -1,7 +1,7 @@
 // Answers that take a while, each to the client that wants it.
 #include <nlohmann/json.hpp>
 
-#include "core/formats/gltf/scratch_folder.h"
+#include "core/formats/conversion/scratch_folder.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 #include "session/layers.h"

@@ -50,4 +50,13 @@ void compute_vertex_normals(MeshData& data) {
     for (const Vec3d& sum : sums) data.normals.push_back(unit_or_zero(sum));
 }
 
+MeshData back_side(const MeshData& mesh, float distance) {
+    MeshData back = mesh;
+    MeshData smooth = mesh;
+    compute_vertex_normals(smooth);
+    for (std::size_t i = 0; i < back.positions.size(); ++i) back.positions[i] -= distance * smooth.normals[i];
+    flip_orientation(back);
+    return back;
+}
+
 }  // namespace mote::core

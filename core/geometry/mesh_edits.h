@@ -12,4 +12,7 @@ void flip_orientation(MeshData& data);
 /// Wuethrich 1998), as Mitsuba computes them for files without normals. Vertices are distinguished by index.
 void compute_vertex_normals(MeshData& data);
 
+/// The surface seen from behind, at a distance behind it [m].
+MeshData back_side(const MeshData& mesh, float distance);
+
 }  // namespace mote::core

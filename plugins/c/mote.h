@@ -78,7 +78,7 @@ MOTE_API mote_scene* mote_scene_new(void);
 /* Null is allowed. Pictures that were rendered from it stay. */
 MOTE_API void mote_scene_free(mote_scene* scene);
 
-/* A scene file (docs/scene-format.md), glTF or GLB; or its text. `options` may be null. A scene that was
+/* A scene file (docs/scene-format.md), glTF, GLB or pbrt; or its text. `options` may be null. A scene that was
  * loaded before is replaced if this succeeds. */
 MOTE_API mote_status mote_scene_load_file(mote_scene* scene, const char* path,
                                           const mote_load_options* options);

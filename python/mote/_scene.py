@@ -139,7 +139,7 @@ def _texts(paths: Sequence[Path_]) -> List[str]:
 
 def load(path: Union[str, Path], *, integrator: str = "", define: Optional[Mapping[str, Any]] = None,
          lenient: bool = False, plugins: Sequence[Path_] = (), **parameters: Any) -> Scene:
-    """A scene file (docs/scene-format.md), glTF or GLB.
+    """A scene file (docs/scene-format.md), glTF, GLB or pbrt.
 
     parameters: as -D NAME=VALUE, load("scene.xml", paths=256); `define` holds those whose names are paths, such as
     {"integrator.paths": 256} (film__width=64 is the same as {"film.width": 64}). integrator: this type instead of the

@@ -163,6 +163,7 @@ std::vector<Format> formats() {
     const auto read_scene = [registry](const std::string& path) { core::load_scene(path, *registry); };
     all.push_back(textual({"scene", ".xml", "mote", read_scene, scene_seeds, {}}));
     all.push_back(textual({"glTF scene", ".gltf", "mote", read_scene, gltf_scene_seeds, {}}));
+    all.push_back(textual({"pbrt scene", ".pbrt", "mote", read_scene, pbrt_scene_seeds, {}}));
     all.push_back({"GLB scene", ".glb", "mote", read_scene, glb_scene_seeds, {}});
     all.push_back(textual({"obj", ".obj", "mote", read_mesh, obj_seeds, {}}));
     all.push_back(textual({"ply", ".ply", "mote", read_mesh, ply_seeds, {}}));

@@ -37,6 +37,8 @@ std::vector<Bytes> gltf_seeds();
 /// A scene with cameras, lights, pictures and materials, as text and as .glb.
 std::vector<Bytes> gltf_scene_seeds();
 std::vector<Bytes> glb_scene_seeds();
+/// A scene of every kind of directive, with its mesh in the text.
+std::vector<Bytes> pbrt_scene_seeds();
 std::vector<Bytes> pfm_seeds();
 /// Two meshes a file.
 std::vector<Bytes> serialized_seeds();

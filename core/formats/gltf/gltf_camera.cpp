@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "core/formats/gltf/gltf_view.h"
-#include "core/formats/gltf/scene_xml.h"
+#include "core/formats/conversion/scene_xml.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
@@ -127,7 +127,7 @@ const Candidate& choose(const std::vector<Candidate>& all, const std::string& na
 }  // namespace
 
 void add_gltf_camera(pugi::xml_node scene, const GltfFile& file, const std::vector<GltfNode>& nodes,
-                     const std::string& name, const Bounds3& bounds, GltfReport& report) {
+                     const std::string& name, const Bounds3& bounds, ConversionReport& report) {
     const std::vector<Candidate> all = cameras_of(file, nodes);
     if (all.empty() && name.empty()) {
         report.note("the scene has no camera: one that shows all of it stands in its place");

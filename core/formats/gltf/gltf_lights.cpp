@@ -4,7 +4,7 @@
 
 #include "core/formats/gltf/gltf_view.h"
 #include "core/formats/gltf/photometry.h"
-#include "core/formats/gltf/scene_xml.h"
+#include "core/formats/conversion/scene_xml.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
@@ -56,7 +56,7 @@ void add_light(pugi::xml_node scene, const GltfNode& node, const GltfValue& ligh
 }  // namespace
 
 std::size_t add_gltf_lights(pugi::xml_node scene, const GltfFile& file, const std::vector<GltfNode>& nodes,
-                            GltfReport& report) {
+                            ConversionReport& report) {
     const GltfValue lights = file.root()["extensions"]["KHR_lights_punctual"]["lights"];
     std::size_t count = 0;
     for (const GltfNode& node : nodes) {

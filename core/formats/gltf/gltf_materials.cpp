@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/formats/gltf/photometry.h"
-#include "core/formats/gltf/scene_xml.h"
+#include "core/formats/conversion/scene_xml.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
@@ -44,7 +44,7 @@ Rgb base_factor(const GltfValue& material) {
     return glm::clamp(Rgb(float(n[0]), float(n[1]), float(n[2])), 0.0f, 1.0f);
 }
 
-double index_of_refraction(const GltfValue& material, GltfReport& report) {
+double index_of_refraction(const GltfValue& material, ConversionReport& report) {
     const double ior = extension(material, "ior")["ior"].number_in(1.5, 0.0, 100.0);
     if (ior >= 1.0) return ior;
     report.fault(material.title() + " has an index of refraction below 1", "1.5 stands in its place");

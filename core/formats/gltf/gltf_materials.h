@@ -22,7 +22,7 @@ struct GltfMaterial {
 class GltfMaterials {
   public:
     /// Radiance is the emissive colour [cd/m^2] times `emission_scale`. BSDFs are written into `scene`.
-    GltfMaterials(GltfFile& file, GltfTextures& textures, GltfReport& report, pugi::xml_node scene,
+    GltfMaterials(GltfFile& file, GltfTextures& textures, ConversionReport& report, pugi::xml_node scene,
                   double emission_scale)
         : file_(file), textures_(textures), report_(report), scene_(scene), emission_scale_(emission_scale) {}
 
@@ -52,7 +52,7 @@ class GltfMaterials {
 
     GltfFile& file_;
     GltfTextures& textures_;
-    GltfReport& report_;
+    ConversionReport& report_;
     pugi::xml_node scene_;
     double emission_scale_;
     bool passes_straight_ = false;

@@ -136,13 +136,4 @@ MeshByHandedness split_by_handedness(const MeshData& mesh) {
     return {part_of(mesh, std::move(straight)), part_of(mesh, std::move(turned))};
 }
 
-MeshData back_side(const MeshData& mesh, float distance) {
-    MeshData back = mesh;
-    MeshData smooth = mesh;
-    compute_vertex_normals(smooth);
-    for (std::size_t i = 0; i < back.positions.size(); ++i) back.positions[i] -= distance * smooth.normals[i];
-    flip_orientation(back);
-    return back;
-}
-
 }  // namespace mote::core

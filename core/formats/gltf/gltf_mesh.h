@@ -20,7 +20,4 @@ struct MeshByHandedness {
 };
 MeshByHandedness split_by_handedness(const MeshData& mesh);
 
-/// The surface seen from behind, at a distance behind it [m].
-MeshData back_side(const MeshData& mesh, float distance);
-
 }  // namespace mote::core

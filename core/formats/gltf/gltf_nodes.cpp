@@ -24,7 +24,7 @@ Transform local_transform(const GltfValue& node) {
     return Transform(glm::scale(m, glm::dvec3(s[0], s[1], s[2])));
 }
 
-void check(const GltfFile& file, const GltfValue& node, GltfReport& report) {
+void check(const GltfFile& file, const GltfValue& node, ConversionReport& report) {
     if (node["skin"].present() && node["mesh"].present())
         report.fault(node.title() + " is a skin over bones, whose pose is not built in",
                      "it stands as it is stored");
@@ -43,7 +43,7 @@ void check(const GltfFile& file, const GltfValue& node, GltfReport& report) {
 
 }  // namespace
 
-std::vector<GltfNode> gltf_nodes(const GltfFile& file, GltfReport& report) {
+std::vector<GltfNode> gltf_nodes(const GltfFile& file, ConversionReport& report) {
     const GltfValue nodes = file.root()["nodes"], scenes = file.root()["scenes"];
     std::vector<GltfNode> all;
     if (scenes.size() == 0) return all;

@@ -8,7 +8,7 @@
 
 #include "core/formats/gltf/gltf_shapes.h"
 #include "core/formats/gltf/gltf_view.h"
-#include "core/formats/gltf/scene_xml.h"
+#include "core/formats/conversion/scene_xml.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
@@ -32,7 +32,7 @@ const std::set<std::string>& known_extensions() {
     return known;
 }
 
-void check_extensions(const GltfValue& root, GltfReport& report) {
+void check_extensions(const GltfValue& root, ConversionReport& report) {
     const auto names = [&](const char* list) {
         std::vector<std::string> found;
         for (std::size_t i = 0; i < root[list].size(); ++i) {
@@ -64,14 +64,14 @@ bool is_gltf(const std::string& path) {
     return extension == ".gltf" || extension == ".glb";
 }
 
-GltfScene convert_gltf(const std::string& path, const std::filesystem::path& folder,
-                       const GltfOptions& options) {
+ConvertedScene convert_gltf(const std::string& path, const std::filesystem::path& folder,
+                       const ConversionOptions& options) {
     GltfFile file(path);
-    GltfScene scene;
+    ConvertedScene scene{{}, ConversionReport(path), {}};
     check_extensions(file.root(), scene.report);
     pugi::xml_document view, materials, shapes, lights;
     OutputFolder output(folder);
-    GltfTextures textures(file, output, options.prefix, options.copy_pictures, scene.report);
+    GltfTextures textures(file, output, options.prefix, options.copy_files, scene.report);
     GltfMaterials looks(file, textures, scene.report, materials, options.emission);
     GltfShapes meshes(file, looks, output, options.prefix, scene.report);
 

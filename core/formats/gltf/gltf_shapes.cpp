@@ -4,9 +4,10 @@
 #include <algorithm>
 
 #include "core/formats/gltf/gltf_mesh.h"
-#include "core/formats/gltf/scene_xml.h"
+#include "core/formats/conversion/scene_xml.h"
 #include "core/formats/meshes/ply_writer.h"
 #include "core/geometry/mesh_checks.h"
+#include "core/geometry/mesh_edits.h"
 #include "core/objects/error.h"
 
 namespace mote::core {

@@ -15,7 +15,7 @@ namespace mote::core {
 class GltfShapes {
   public:
     GltfShapes(GltfFile& file, GltfMaterials& materials, OutputFolder& folder, const std::string& prefix,
-               GltfReport& report)
+               ConversionReport& report)
         : file_(file), materials_(materials), folder_(folder), prefix_(prefix), report_(report) {}
 
     /// Writes all meshes of these nodes. A mesh of several nodes is a shapegroup with instances, unless it
@@ -52,7 +52,7 @@ class GltfShapes {
     GltfMaterials& materials_;
     OutputFolder& folder_;
     std::string prefix_;
-    GltfReport& report_;
+    ConversionReport& report_;
     Bounds3 bounds_;
     bool emits_ = false, has_media_ = false;
     std::map<std::pair<std::size_t, bool>, Parts> parts_;

@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "core/files/whole_file.h"
-#include "core/formats/gltf/scene_xml.h"
+#include "core/formats/conversion/scene_xml.h"
 #include "core/formats/pictures/alpha_channel.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"

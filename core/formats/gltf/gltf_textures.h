@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/formats/gltf/gltf_file.h"
-#include "core/formats/gltf/gltf_report.h"
-#include "core/formats/gltf/output_folder.h"
+#include "core/formats/conversion/conversion_report.h"
+#include "core/formats/conversion/output_folder.h"
 #include "core/formats/pictures/image_file.h"
 
 namespace mote::core {
@@ -20,7 +20,7 @@ class GltfTextures {
     /// Pictures beside the glTF file are copied into `folder` where `copies` says so, else named where they
     /// are.
     GltfTextures(GltfFile& file, OutputFolder& folder, const std::string& prefix, bool copies,
-                 GltfReport& report)
+                 ConversionReport& report)
         : file_(file), folder_(folder), prefix_(prefix), copies_(copies), report_(report) {}
 
     /// A picture for a textureInfo ("baseColorTexture": ...). `raw`: its 8-bit values are linear.
@@ -57,7 +57,7 @@ class GltfTextures {
     OutputFolder& folder_;
     std::string prefix_;
     bool copies_;
-    GltfReport& report_;
+    ConversionReport& report_;
     std::map<std::size_t, std::string> originals_;  ///< paths
     std::map<std::string, Picture> made_;
     std::map<std::string, std::string> named_;  ///< path -> as the scene names it

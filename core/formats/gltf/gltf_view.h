@@ -13,10 +13,10 @@ namespace mote::core {
 /// Writes the camera called `name` (its own name or its node's), or the first one; where there is none, one
 /// that shows `bounds`. Throws InputError with the nearest name.
 void add_gltf_camera(pugi::xml_node scene, const GltfFile& file, const std::vector<GltfNode>& nodes,
-                     const std::string& name, const Bounds3& bounds, GltfReport& report);
+                     const std::string& name, const Bounds3& bounds, ConversionReport& report);
 
 /// Writes the lights of KHR_lights_punctual. Returns how many.
 std::size_t add_gltf_lights(pugi::xml_node scene, const GltfFile& file, const std::vector<GltfNode>& nodes,
-                            GltfReport& report);
+                            ConversionReport& report);
 
 }  // namespace mote::core

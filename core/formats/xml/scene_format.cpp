@@ -136,6 +136,36 @@ dispersion where they are switched on; light from a surface with holes; textures
 wrapped differently along u and v; a texture and colours of vertices at once; skins, shape keys, compressed meshes,
 pictures other than PNG and JPEG, and unknown extensions that the file requires.
 
+## pbrt scenes
+
+Every command that takes a scene takes pbrt-v4 as well, `.pbrt` or `.pbrt.gz`; `mote convert scene.pbrt scene.xml` writes it in
+this language. The world keeps its coordinates; the camera mirrors x. An unknown directive, type, name or parameter is an error with file,
+line and the nearest known name, and so is what has no counterpart; `--lenient` puts what the table says, or nothing, in its place.
+
+| pbrt | here |
+|---|---|
+| `Include`, `Import`, gzip | read, 32 deep; files are found beside the scene |
+| `Attribute`, transforms, `CoordinateSystem`, `ReverseOrientation`, `ColorSpace` | as in pbrt; `Option` and `Accelerator` are ignored |
+| `ActiveTransform EndTime` | an error where it moves a shape; it stands as at the shutter's opening |
+| `ObjectBegin`, `ObjectInstance` | `shapegroup`, `instance`; area lights in them emit nothing, as in pbrt |
+| `sphere`, `disk`, `cylinder` | exact; cut off or deformed ones are meshes |
+| `trianglemesh`, `plymesh` (`.ply.gz`), `bilinearmesh`, `loopsubdiv` | `ply`; patches that are no parallelogram are 8 x 8 squares |
+| `curve` | `bsplinecurve`: round tubes; `ribbon` is an error |
+| spectra | linear sRGB through the CIE matching functions (the fit errs by less than 0.005 in chromaticity); names of illuminants, metals and glasses; no dispersion |
+| `scale`, `power`, `illuminance` | as pbrt normalizes them; exposure time and `iso` are a factor on all lights |
+| `point`, `distant`, `spot`, `infinite` | `point`, `directional`, `spot` (falls off linearly in the angle), `constant`, `envmap` (the equal-area picture resampled; portals are ignored) |
+| `projection`, `goniometric` | `projector`; an error, the mean intensity as a `point` |
+| area light `diffuse`, `twosided` | `area`; two sheets 1e-5 of the coordinates apart |
+| `diffuse`, `coateddiffuse`, `conductor`, `dielectric`, `thindielectric`, `mix`, `interface` | `diffuse`, `plastic` or `roughplastic`, `conductor`, `dielectric` and their rough ones of GGX, `thindielectric`, `blendbsdf`, `null`; all but glass `twosided`; alpha is the root of roughness unless `remaproughness` is off |
+| `coatedconductor`, `diffusetransmission`, `subsurface`, `hair`, `measured` | errors; the metal, `principledthin`, a coated diffuse, a diffuse of its colour, grey |
+| `alpha`, `displacement`, `normalmap` | `mask`, `bumpmap`, `normalmap` |
+| `imagemap`, `checkerboard`, `constant` | `bitmap`, `checkerboard`, a colour; `scale`, `mix`, `bilerp`, gamma and inversion are multiplied into new pictures |
+| `dots`, `directionmix`, `fbm`, `wrinkled`, `windy`, `marble`, `ptex`, mappings other than uv | errors; regular dots, the mean |
+| media `homogeneous`, `uniformgrid`, `rgbgrid`, `nanovdb`, `cloud` | `homogeneous`, `heterogeneous`: `.vol` grids (a cloud of 128^3 voxels), `.nvdb` as it is |
+| `perspective`, `orthographic` | `perspective` or `thinlens`, `orthographic`; a window off the axis, `spherical` and `realistic` are errors |
+| `Film`, `PixelFilter`, `Sampler` | size, `box`, `tent`, `gaussian` (for others too), number of samples; films are not cropped |
+| `path`, `volpath` and others that make the same picture | `path`, `volpath`; `max_depth` is one more |
+
 ## What is ours
 
 Types and parameters that Mitsuba lacks: volumes of type `vdbvolume`; the parameters `Le`, `Lescale`,

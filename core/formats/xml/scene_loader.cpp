@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
+#include "core/formats/xml/converted_scenes.h"
 #include "core/formats/xml/element_checks.h"
 #include "core/formats/xml/foreign_integrators.h"
 #include "core/formats/xml/foreign_names.h"
 #include "core/formats/xml/frame_files.h"
-#include "core/formats/xml/gltf_loader.h"
 #include "core/formats/xml/lenient_scene.h"
 #include "core/formats/xml/scene_builder.h"
 #include "core/formats/xml/scene_defines.h"
@@ -89,7 +89,8 @@ std::unique_ptr<Scene> make_scene(SceneDocument document, SceneDefines& defines,
 
 SceneDocument load_scene_elements(const std::string& path, const Registry& registry,
                                   const LoadOptions& options) {
-    if (is_gltf(path)) throw InputError("is a glTF scene: turn it into XML first (mote convert)", {path, 0});
+    if (is_foreign_scene(path))
+        throw InputError("is no XML: turn it into XML first (mote convert)", {path, 0});
     SceneDefines defines(options.defines);
     SceneDocument document = read_scene_file(path, defines);
     Faults faults;
@@ -106,7 +107,7 @@ SceneDocument load_scene_elements(const std::string& path, const Registry& regis
 
 std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& registry,
                                   const LoadOptions& options) {
-    if (is_gltf(path)) return load_gltf_scene(path, registry, options);
+    if (is_foreign_scene(path)) return load_converted_scene(path, registry, options);
     SceneDefines defines(options.defines);
     return make_scene(read_scene_file(path, defines), defines, registry, options, path);
 }

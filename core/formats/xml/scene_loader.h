@@ -44,7 +44,7 @@ struct LoadOptions {
     LoadReport* report = nullptr;  ///< filled where it is not null
 };
 
-/// The scene of a file, XML or glTF. Throws InputError; SceneErrors where several faults were found.
+/// The scene of a file: XML, glTF or pbrt. Throws InputError; SceneErrors where several faults were found.
 std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& registry,
                                   const LoadOptions& options = {});
 /// The first two steps alone, for writers of scenes: elements in today's words, every -D applied,

@@ -1,10 +1,6 @@
-// <spectrum>: tables of wavelengths as linear RGB.
-//
-// The matching functions are the analytic fit of Wyman, Sloan and Shirley 2013 ("Simple analytic
-// approximations to the CIE XYZ color matching functions"), the multi-lobe one.
+// <spectrum>: a number or a table of wavelengths as linear RGB.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -12,19 +8,6 @@
 #include "core/objects/error.h"
 
 namespace mote::core {
-
-struct SpectralValue {
-    double wavelength;  ///< nm
-    double value;
-};
-
-/// CIE 1931 matching functions at a wavelength in nm.
-Vec3d cie_xyz(double wavelength);
-
-/// A reflectance (or coefficient) lit by daylight (D65), so that the constant 1 is white; or, for emission,
-/// light itself, so that the constant 1 (illuminant E) has luminance 1 and is slightly red. Linear between
-/// the entries, zero outside them. Entries must rise in wavelength. Negative channels are kept.
-Rgb spectrum_to_rgb(std::span<const SpectralValue> table, bool emission);
 
 /// "0.5" is grey; "400:0.1, 500:0.2, ..." is a table. Throws InputError for anything else. Colours outside
 /// sRGB are clamped, with a warning.

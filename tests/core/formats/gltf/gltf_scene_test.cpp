@@ -8,7 +8,7 @@
 #include <fstream>
 #include <thread>
 
-#include "core/formats/gltf/scratch_folder.h"
+#include "core/formats/conversion/scratch_folder.h"
 #include "core/formats/meshes/ply_writer.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/formats/xml/faults.h"

@@ -1,4 +1,5 @@
 // Files of version 0.x, parameters without effect, and spectra.
+#include "core/formats/spectra/spectral_table.h"
 #include "core/formats/xml/spectrum.h"
 #include "core/geometry/shape.h"
 #include "core/materials/bsdf.h"

@@ -1,5 +1,5 @@
 // A pipe without data: reading from it returns when no process has its other end open any more.
-#include "core/formats/gltf/scratch_folder.h"
+#include "core/formats/conversion/scratch_folder.h"
 
 #include <fcntl.h>
 #include <signal.h>

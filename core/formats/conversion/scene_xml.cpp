@@ -1,5 +1,5 @@
 // Writing elements.
-#include "core/formats/gltf/scene_xml.h"
+#include "core/formats/conversion/scene_xml.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Writing side files.
-#include "core/formats/gltf/output_folder.h"
+#include "core/formats/conversion/output_folder.h"
 
 #include <cerrno>
 #include <cstring>

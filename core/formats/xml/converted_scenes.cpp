@@ -1,8 +1,10 @@
-// Names of temporary files do not reach the user: messages name the glTF file, and it is what a checkpoint
-// depends on.
-#include "core/formats/xml/gltf_loader.h"
+// Names of temporary files do not reach the user: messages name the foreign scene, and it is what a
+// checkpoint depends on.
+#include "core/formats/xml/converted_scenes.h"
 
-#include "core/formats/gltf/scratch_folder.h"
+#include "core/formats/conversion/scratch_folder.h"
+#include "core/formats/gltf/gltf_scene.h"
+#include "core/formats/pbrt/pbrt_scene.h"
 #include "core/formats/xml/faults.h"
 #include "core/formats/xml/scene_making.h"
 #include "core/objects/number_text.h"
@@ -39,8 +41,17 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 }  // namespace
 
-GltfOptions take_gltf_options(std::vector<std::pair<std::string, std::string>>& defines) {
-    GltfOptions options;
+bool is_foreign_scene(const std::string& path) { return is_gltf(path) || is_pbrt(path); }
+
+ConvertedScene convert_foreign_scene(const std::string& path, const std::filesystem::path& folder,
+                                     const ConversionOptions& options) {
+    return is_pbrt(path) ? convert_pbrt(path, folder, options) : convert_gltf(path, folder, options);
+}
+
+ConversionOptions take_conversion_options(const std::string& path,
+                                          std::vector<std::pair<std::string, std::string>>& defines) {
+    ConversionOptions options;
+    if (!is_gltf(path)) return options;
     options.camera = take(defines, "camera");
     if (const std::string emission = take(defines, "emission"); !emission.empty()) {
         options.emission = parse_number(emission, {"-D emission", 0});
@@ -49,37 +60,36 @@ GltfOptions take_gltf_options(std::vector<std::pair<std::string, std::string>>& 
     return options;
 }
 
-std::vector<std::string> gltf_approximations(const GltfScene& scene, const std::string& path, bool lenient) {
+std::vector<std::string> approximations_of(const ConvertedScene& scene, bool lenient) {
     std::vector<std::string> lines;
     Faults faults;
-    for (const GltfFault& fault : scene.report.faults) {
-        const InputError error(fault.what, {path, 0});
-        faults.add(nullptr, error);
-        lines.push_back(std::string(error.what()) + ": " + fault.done);
+    for (const ConversionFault& fault : scene.report.faults) {
+        if (!lenient) faults.add(nullptr, fault.error);
+        lines.push_back(std::string(fault.error.what()) + ": " + fault.done);
     }
-    if (!lenient) faults.throw_all({});
+    faults.throw_all(scene.files);
     return lines;
 }
 
-std::unique_ptr<Scene> load_gltf_scene(const std::string& path, const Registry& registry,
-                                       const LoadOptions& options) {
+std::unique_ptr<Scene> load_converted_scene(const std::string& path, const Registry& registry,
+                                            const LoadOptions& options) {
     LoadOptions others = options;
-    GltfOptions conversion = take_gltf_options(others.defines);
+    ConversionOptions conversion = take_conversion_options(path, others.defines);
     const ScratchFolder folder;
     const std::string prefix = folder.path() + "/";
     const auto named = [&](const std::string& text) { return replaced(text, prefix, path + ": "); };
     conversion.prefix = prefix;
     try {
-        const GltfScene gltf = convert_gltf(path, folder.path(), conversion);
+        const ConvertedScene converted = convert_foreign_scene(path, folder.path(), conversion);
         SceneDefines defines(others.defines);
-        SceneDocument document = read_scene_text(gltf.xml, folder.path(), path + " as XML", defines);
-        document.approximations = gltf_approximations(gltf, path, options.lenient);
+        SceneDocument document = read_scene_text(converted.xml, folder.path(), path + " as XML", defines);
+        document.approximations = approximations_of(converted, options.lenient);
         auto scene =
             make_scene(std::move(document), defines, registry, others, path, [&](Scene::Parts& parts) {
                 for (std::string& warning : parts.warnings) warning = named(warning);
-                for (const std::string& note : gltf.report.notes)
+                for (const std::string& note : converted.report.notes)
                     parts.warnings.push_back(path + ": " + note);
-                parts.input_files = gltf.files;
+                parts.input_files = converted.files;
             });
         if (options.report)
             for (std::string& line : options.report->approximations) line = named(line);
