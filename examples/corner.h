@@ -1,5 +1,5 @@
-// What a camera at the origin sees that looks along z into a corner, as arrays of pixels: a wall at z = 4 m
-// and a floor at y = 1 m (down).
+// A corner as arrays of pixels: a wall at z = 4 m and a floor at y = 1 m (down), seen by a camera at the
+// origin that looks along z.
 #pragma once
 
 #include <mote/core/math/vec.h>

@@ -19,7 +19,7 @@ double squared_error(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
 
 int main() {
     const std::vector<corner::Seen> view = corner::view();
-    // Features without noise; a feature that tells surfaces apart keeps their edges: here the normal.
+    // Features without noise; a feature that differs between surfaces keeps their edges: the normal.
     std::vector<float> x, y, z, normal_y;
     std::vector<Rgb> truth, noisy;
     core::Rng rng(3);

@@ -32,7 +32,7 @@ struct MediumKind {
 /// The media of a scene that scatter light.
 class ScatteringMedia {
   public:
-    /// Of all media of a scene, such as RayQueries::media(), which must outlive this.
+    /// `media`: all media of a scene, such as RayQueries::media(); they must outlive this.
     explicit ScatteringMedia(std::span<const std::shared_ptr<core::Medium>> media);
     /// Null where the medium does not scatter, or is null.
     const MediumKind* find(const core::Medium* medium) const {
