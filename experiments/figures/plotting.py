@@ -35,11 +35,12 @@ def colour(method):
     return COLOURS[max(known, key=len)] if known else OTHERS[sum(map(ord, method)) % len(OTHERS)]
 
 
-def figure(columns=1, height=520, **options):
+def figure(columns=1, height=520, rows=1, **options):
     """A figure of 960 pixels, and its axes in a list."""
     plt.rcParams.update({"font.size": 10, "svg.fonttype": "none", "svg.hashsalt": "mote"})
-    made, axes = plt.subplots(1, columns, figsize=(WIDTH / DPI, height / DPI), dpi=DPI, layout="constrained", squeeze=False, **options)
-    return made, list(axes[0])
+    made, axes = plt.subplots(rows, columns, figsize=(WIDTH / DPI, height / DPI), dpi=DPI, layout="constrained", squeeze=False, **options)
+    made.get_layout_engine().set(w_pad=0.1, h_pad=0.08)
+    return made, list(axes.flat)
 
 
 def log_axes(axes, x, y, percent=True):

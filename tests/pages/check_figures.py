@@ -19,7 +19,7 @@ from typing import NamedTuple
 from pages import run
 
 MIN_POINTS, SHOWN_WIDTH = 9, 960
-MEASURES = ("relative RMSE", "relMSE", "bias", "difference", "seconds", "time", "luminance", "radiance", "lights")
+MEASURES = ("relative RMSE", "relMSE", "bias", "difference", "seconds", "time", "luminance", "radiance", "lights", "method")
 WIDE, NARROW = 0.636, {**dict.fromkeys("ijl.,:;'|!", 0.33), **dict.fromkeys("frt-()[] /", 0.40), **dict.fromkeys("mwMW%", 0.95)}
 SVG = "{http://www.w3.org/2000/svg}"
 
