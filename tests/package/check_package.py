@@ -80,6 +80,14 @@ def public_headers():
     return [line for line in lines if line and not line.startswith("#")]
 
 
+def python_with_numpy():
+    """For the plugin of Python integrators: this interpreter, or Debian's."""
+    for python in (sys.executable, "/usr/bin/python3"):
+        if Path(python).is_file() and subprocess.run([python, "-c", "import numpy"], capture_output=True).returncode == 0:
+            return [f"-DPython3_EXECUTABLE={python}"]
+    return []
+
+
 def build_consumer(prefix):
     consumer, build = work / "consumer", work / "consumer_build"
     shutil.rmtree(build, ignore_errors=True)
@@ -89,7 +97,7 @@ def build_consumer(prefix):
     run("cmake", "-S", consumer, "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}",
         f"-DMOTE_EXAMPLES={arguments.source}/examples", f"-DCMAKE_CXX_COMPILER={arguments.compiler}",
         "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
-        *launcher)
+        *python_with_numpy(), *launcher)
     run("cmake", "--build", build)
     return build
 
