@@ -37,7 +37,15 @@ class Lock {
             Dl_info info;
             if (dladdr(reinterpret_cast<void*>(&Py_IsInitialized), &info))
                 dlopen(info.dli_fname, RTLD_NOW | RTLD_GLOBAL);
-            Py_InitializeEx(0), PyEval_SaveThread();
+            PyConfig config;
+            PyConfig_InitPythonConfig(&config);
+            config.install_signal_handlers = 0;
+            // Packages are those of the interpreter that the plugin was configured with.
+            PyConfig_SetBytesString(&config, &config.program_name, PYTHON_EXECUTABLE);
+            const PyStatus status = Py_InitializeFromConfig(&config);
+            PyConfig_Clear(&config);
+            if (PyStatus_Exception(status)) throw core::InputError(std::string("Python: ") + status.err_msg);
+            PyEval_SaveThread();
         }
         return PyGILState_Ensure();
     }
