@@ -35,8 +35,10 @@ inline std::optional<core::SurfaceHit> hit(const core::ForeignSurface& wall, con
 }
 
 struct Room {
+    std::shared_ptr<core::Medium> medium = {};  ///< fills the room; null: vacuum
     core::ForeignSurface wall{core::make_diffuse(core::make_constant_texture(core::Rgb(reflectance)))};
     core::CallbackScene scene{{.first_hit = [this](const core::Ray& ray) { return hit(wall, ray); },
+                               .medium = medium,
                                .emitters = {lights::make_point_light({0.4, 0.5, 0.6}, core::Rgb(intensity))},
                                .bounds = {core::Vec3(0.0f), core::Vec3(1.0f)}}};
 
@@ -72,7 +74,8 @@ struct Receivers {
             lights::ReceiverTile tile;
             for (int lane = 0; lane < lanes; ++lane) {
                 vertices[std::size_t(lane)] = room.vertex(rng);
-                tile.set(lane, vertices[std::size_t(lane)], core::Rgb(1.0f), {}, rng, 1000);
+                tile.set(lane, vertices[std::size_t(lane)], core::Rgb(1.0f), room.scene.medium_state(), rng,
+                         1000);
             }
             double mean = 0.0;
             for (const core::Rgb& l : light(vertices, tile, rng))

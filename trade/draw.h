@@ -37,8 +37,9 @@ std::string text_table(const Results& results);
 /// behind them, and the smallest error that the reference can judge (`floor`, 0 for none) as a line. Curves
 /// are distinguished by colour, marker and a label at their end. Text is escaped.
 std::string plot_svg(std::span<const Curve> curves, double floor, const std::string& title);
-/// Colour of the curve at this index, as in the plot (Okabe and Ito 2008: safe for the colour-blind).
-std::string curve_colour(std::size_t index);
+/// Colour of each curve in the plot: the first one of an integrator has the same in all plots (Okabe and Ito
+/// 2008: safe for the colour-blind).
+std::vector<std::string> curve_colours(std::span<const Curve> curves);
 /// Text made safe for XML and HTML.
 std::string escaped(const std::string& text);
 /// One HTML file without references to others. `page_width`: of the pictures in it.

@@ -52,7 +52,7 @@ std::string error_cell(const Curve& c) {
 std::string row(const Results& results, std::size_t index) {
     const Curve& c = results.curves[index];
     std::string html = fmt::format("<tr><td><span class=\"swatch\" style=\"background:{}\"></span>{}</td>",
-                                   curve_colour(index), escaped(c.method));
+                                   curve_colours(results.curves)[index], escaped(c.method));
     html += cell(escaped(c.integrator + (c.settings.empty() ? "" : ": " + c.settings)), "text wrap");
     html += cell(rounded_text(c.passes)) + seconds_cell(c.wall) + seconds_cell(c.cpu) +
             seconds_cell(c.build) + error_cell(c) + bias_cell(results, c);

@@ -15,12 +15,29 @@ namespace mote::trade {
 namespace {
 
 constexpr double width = 960.0, height = 560.0;
-constexpr double left = 78.0, right = 760.0, top = 48.0, bottom = 492.0;  // of the axes; labels on the right
-constexpr double label_distance = 17.0;
+constexpr double left = 78.0, top = 48.0, bottom = 492.0;  // of the axes; labels on the right
+constexpr double label_distance = 17.0, label_gap = 14.0;
 
-// Okabe and Ito's colours without the yellow, which is too light on white.
-constexpr std::array<const char*, 7> palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                "#e69f00", "#56b4e9", "#000000"};
+/// Width of a label in bold letters of 13 pixels, at most.
+double label_width(const std::string& text) { return 8.2 * double(text.size()); }
+
+/// Right end of the axes, which leaves room for the longest label.
+double axes_end(std::span<const Curve> curves) {
+    double longest = 0.0;
+    for (const Curve& c : curves) longest = std::max(longest, label_width(c.method));
+    return std::clamp(width - longest - label_gap - 6.0, 0.5 * width, 760.0);
+}
+
+// Okabe and Ito's colours without the yellow, which is too light on white; behind them four of Tol's.
+constexpr std::array<const char*, 11> palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                 "#e69f00", "#56b4e9", "#000000", "#882255",
+                                                 "#999933", "#332288", "#888888"};
+
+/// Colour of the first curve of an integrator, in every plot.
+constexpr std::pair<const char*, std::size_t> integrator_colours[] = {
+    {"path", 0},          {"volpath", 0},         {"mote_layers", 1},
+    {"mote_vpl", 2},      {"mote_ray_lights", 3}, {"mote_photon_map", 4},
+    {"mote_epipolar", 5}, {"mote_ray_bundles", 6}};
 
 /// One axis: a range of powers of ten, rounded outwards to 1, 2 or 5.
 class Axis {
@@ -62,7 +79,12 @@ std::string point_text(double x, double y) { return fmt::format("{:.1f},{:.1f}",
 class Plot {
   public:
     Plot(std::span<const Curve> curves, double floor)
-        : curves_(curves), floor_(floor), x_(x_axis(curves)), y_(y_axis(curves, floor)) {}
+        : curves_(curves),
+          colours_(curve_colours(curves)),
+          floor_(floor),
+          right_(axes_end(curves)),
+          x_(x_axis(curves, right_)),
+          y_(y_axis(curves, floor)) {}
 
     std::string draw(const std::string& title) {
         text_ = fmt::format(
@@ -86,7 +108,7 @@ class Plot {
     void put(fmt::format_string<Args...> format, Args&&... args) {
         text_ += fmt::format(format, std::forward<Args>(args)...);
     }
-    static Axis x_axis(std::span<const Curve> curves) {
+    static Axis x_axis(std::span<const Curve> curves, double right) {
         double low = 1e300, high = 0.0;
         for (const Curve& c : curves)
             for (const CurvePoint& p : c.points) low = std::min(low, p.wall), high = std::max(high, p.wall);
@@ -113,7 +135,7 @@ class Plot {
         };
         const std::vector<double> times = x_.ticks(), errors = y_.ticks();
         for (const double t : times) grid(x_.at(t), top, x_.at(t), bottom, is_decade(t));
-        for (const double e : errors) grid(left, y_.at(e), right, y_.at(e), is_decade(e));
+        for (const double e : errors) grid(left, y_.at(e), right_, y_.at(e), is_decade(e));
         put("<g fill=\"#444444\" text-anchor=\"middle\">\n");
         for (const double t : times)
             if (times.size() <= 12 || is_decade(t))
@@ -123,8 +145,8 @@ class Plot {
             if (errors.size() <= 16 || is_decade(e))
                 put("<text x=\"{}\" y=\"{:.1f}\">{:g} %</text>\n", left - 8.0, y_.at(e) + 4.5, 100.0 * e);
         put("</g>\n<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888888\"/>\n",
-            left, top, right - left, bottom - top);
-        put("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">wall time</text>\n", 0.5 * (left + right),
+            left, top, right_ - left, bottom - top);
+        put("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">wall time</text>\n", 0.5 * (left + right_),
             bottom + 40.0);
         put("<text x=\"18\" y=\"{0}\" text-anchor=\"middle\" transform=\"rotate(-90 18 {0})\">relative "
             "RMSE</text>\n",
@@ -137,8 +159,8 @@ class Plot {
         if (!y_.holds(floor_)) return;
         const double y = y_.at(floor_);
         put("<rect x=\"{}\" y=\"{:.1f}\" width=\"{}\" height=\"{:.1f}\" fill=\"#f3f3f3\"/>\n", left, y,
-            right - left, bottom - y);
-        put("<path d=\"M{} {:.1f}H{}\" stroke=\"#666666\" stroke-dasharray=\"6 4\"/>\n", left, y, right);
+            right_ - left, bottom - y);
+        put("<path d=\"M{} {:.1f}H{}\" stroke=\"#666666\" stroke-dasharray=\"6 4\"/>\n", left, y, right_);
         // Above the line where there is no room below it.
         put("<text x=\"{}\" y=\"{:.1f}\" font-size=\"12\" fill=\"#555555\">the reference judges down to "
             "{:.2g} %</text>\n",
@@ -151,7 +173,7 @@ class Plot {
         for (const CurvePoint& p : curve.points) path += point_text(x_.at(p.wall), y_.at(p.highest)) + " ";
         for (auto p = curve.points.rbegin(); p != curve.points.rend(); ++p)
             path += point_text(x_.at(p->wall), y_.at(p->lowest)) + " ";
-        put("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.16\"/>\n", path, curve_colour(index));
+        put("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.16\"/>\n", path, colours_[index]);
     }
     // Errors between two points of the front are those of the earlier one until the later one is there.
     void front() {
@@ -170,14 +192,14 @@ class Plot {
         if (end < core::infinity)
             path += fmt::format("H{:.1f}V{:.1f}", x_.at(end), y_.at(floor_));
         else
-            path += fmt::format("H{}", right);
+            path += fmt::format("H{}", right_);
         put("<path d=\"{}\" fill=\"none\" stroke=\"#b0b0b0\" stroke-width=\"6\" stroke-opacity=\"0.75\" "
             "stroke-linejoin=\"round\"/>\n",
             path);
     }
     void line(std::size_t index) {
         const Curve& curve = curves_[index];
-        const std::string colour = curve_colour(index);
+        const std::string colour = colours_[index];
         std::string path;
         for (const CurvePoint& p : curve.points) path += point_text(x_.at(p.wall), y_.at(p.error)) + " ";
         put("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}/>\n", path, colour,
@@ -187,7 +209,7 @@ class Plot {
     }
     void marker(std::size_t index, double x, double y, const std::string& fill) {
         const std::string style =
-            fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"1.5\"", fill, curve_colour(index));
+            fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"1.5\"", fill, colours_[index]);
         const double r = 4.0;
         switch (index % 4) {
             case 0:
@@ -225,21 +247,36 @@ class Plot {
         for (const Label& l : all) {
             put("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"{}\" stroke-width=\"0.8\" "
                 "fill=\"none\"/>\n",
-                l.x + 5.0, l.y, right + 10.0, l.shown, curve_colour(l.index));
-            put("<text x=\"{}\" y=\"{:.1f}\" fill=\"{}\" font-weight=\"bold\">{}</text>\n", right + 14.0,
-                l.shown + 4.5, curve_colour(l.index), escaped(curves_[l.index].method));
+                l.x + 5.0, l.y, right_ + 10.0, l.shown, colours_[l.index]);
+            put("<text x=\"{}\" y=\"{:.1f}\" fill=\"{}\" font-weight=\"bold\">{}</text>\n",
+                right_ + label_gap, l.shown + 4.5, colours_[l.index], escaped(curves_[l.index].method));
         }
     }
 
     std::span<const Curve> curves_;
-    double floor_;
+    std::vector<std::string> colours_;  ///< by curve
+    double floor_, right_;              ///< smallest error that is judged; end of the axes
     Axis x_, y_;
     std::string text_;
 };
 
 }  // namespace
 
-std::string curve_colour(std::size_t index) { return palette[index % palette.size()]; }
+std::vector<std::string> curve_colours(std::span<const Curve> curves) {
+    std::vector<std::string> colours(curves.size());
+    std::array<bool, palette.size()> taken{};
+    for (std::size_t i = 0; i < curves.size(); ++i)
+        for (const auto& [integrator, colour] : integrator_colours)
+            if (curves[i].integrator == integrator && !taken[colour])
+                colours[i] = palette[colour], taken[colour] = true;
+    std::size_t next = 0;
+    for (std::string& colour : colours) {
+        if (!colour.empty()) continue;
+        while (next < palette.size() && taken[next]) ++next;
+        colour = palette[next++ % palette.size()];
+    }
+    return colours;
+}
 
 std::string escaped(const std::string& text) {
     std::string result;

@@ -38,18 +38,9 @@ RTCScene unit_cube(RTCDevice device) {
 
 std::optional<SurfaceHit> trace(RTCScene soup, const core::ForeignSurface& wall, const Ray& ray) {
     RTCRayHit r{};
-    r.ray = {ray.origin.x,
-             ray.origin.y,
-             ray.origin.z,
-             ray.t_min,
-             ray.direction.x,
-             ray.direction.y,
-             ray.direction.z,
-             0.0f,
-             ray.t_max,
-             ~0u,
-             0,
-             0};
+    r.ray.org_x = ray.origin.x, r.ray.org_y = ray.origin.y, r.ray.org_z = ray.origin.z;
+    r.ray.dir_x = ray.direction.x, r.ray.dir_y = ray.direction.y, r.ray.dir_z = ray.direction.z;
+    r.ray.tnear = ray.t_min, r.ray.tfar = ray.t_max, r.ray.mask = ~0u;
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
     rtcIntersect1(soup, &r);

@@ -6,7 +6,7 @@ A line through the smoke room: light unbounded, bounded, with one to three steps
 `mote_layers`, shows where the line is. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is
 missing. A full run takes 2.5 minutes of one core, --quick half a minute.
 
-    experiments/figures/engelhardt_10_04_recursion.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
+    experiments/figures/engelhardt_10_04_recursion.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER] [--bound 5]
 """
 import sys
 
@@ -47,7 +47,7 @@ def render_few(mote, quick):
     'bounded', 'compensated', and how many VPLs there are on average."""
     common = {"resx": 64 if quick else 120, "resy": ROWS, "paths": 60 if quick else 200,
               "integrator.eye_samples": 20 if quick else 40}
-    huge = {**approximate(0, strategy="1-to-n"), "bound": 1e12}  # without bound, but every eye path meets all VPLs
+    huge = {**approximate(0, strategy="1-to-n"), "integrator.bound": 1e12}  # without bound, but every eye path meets all VPLs; not replaced by --bound
     exact = compensation("exact", strategy="1-to-n")
     seeds = range(4)
     unbounded, others = ([mote.render("smoke_room", name, common | settings, passes=1, seed=s) for s in seeds]
@@ -115,7 +115,7 @@ def draw(beauty, multiple, few, vpls, clean, path):
         axes.set_ylim(bottom=0)
     for axes in panels:
         axes.legend(fontsize=11)
-        axes.set(xlim=(0, 1), xlabel="along the line")
+        axes.set(xlim=(0, 1), xlabel="along the line", ylabel="luminance [W/(m² sr)]")
     canvas.save(path)
 
 

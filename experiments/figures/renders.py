@@ -190,7 +190,8 @@ def finish(origin, output):
 
 def main(script, documentation, figure):
     """Runs `figure(mote, quick, output)`, which returns an exit code; `output` lacks its suffix."""
-    parser = argparse.ArgumentParser(description=documentation.split("\n")[0])
+    parser = argparse.ArgumentParser(description=documentation.split("\n")[0], epilog="--NAME VALUE, such as --bound 5 or "
+                                     "--film.width 80, sets a parameter of the scene or of its integrators, as -D of mote render does.")
     parser.add_argument("--quick", action="store_true", help="less than a minute, at low resolution")
     parser.add_argument("--redraw", action="store_true", help="take the pictures of the last run where they are")
     parser.add_argument("--output", type=Path, default=ROOT / "out" / "figures")

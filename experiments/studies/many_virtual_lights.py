@@ -23,7 +23,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "experiments/figures"))
-from origin import Origin
+import plotting
+from origin import Origin, table_of
 
 SHARED = "multidimensional:0.02:1000:0:0.2:0.2"
 TO_TWO_PERCENT = "multidimensional:0.018:1100:0:0.25:0.25"  # in the smoke room
@@ -90,33 +91,52 @@ def write_table(path, lines, growths):
             claims.writerow([f"{scene}: seconds grow as lights to the power", f"{slope(growth):.2f}"])
 
 
-def draw(path, lines, growths):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    figure, (errors, growth) = plt.subplots(1, 2, figsize=(13, 5))
-    for scene, _, _ in SCENES:
-        own = [l for l in lines if l["scene"] == scene and float(l["relative_error_percent"]) > 0]
-        points = [(float(l["gather_seconds"]), float(l["relative_error_percent"])) for l in own]
-        errors.loglog(*zip(*points), "o", label=scene.replace("_", " "))
-        for l, point in zip(own, points):
-            errors.annotate(l["method"].replace("multidimensional", "m"), point, fontsize=5)
-        growth.loglog([float(l["lights"]) for l in growths[scene]], [float(l["gather_seconds"]) for l in growths[scene]], "o-",
-                      label=f"{scene.replace('_', ' ')}, exponent {slope(growths[scene]):.2f}")
-    errors.axhline(2.0, color="gray", linewidth=0.5), errors.axvline(40.0, color="gray", linewidth=0.5)
-    errors.set(xlabel="processor seconds", ylabel="relative RMSE against all lights [%]", title="512 x 512, a million lights")
-    growth.set(xlabel="lights", ylabel="processor seconds", title="lightcuts by an estimated error of 4 %, at most 4000 groups")
-    for ax in (errors, growth):
-        ax.legend(), ax.grid(True, which="both", alpha=0.3)
-    figure.tight_layout()
-    figure.savefig(path, dpi=110)
+def name_of(method):
+    """The method in words; None for one that the plot leaves out."""
+    kind, *numbers = method.split(":")
+    if kind == "ris":
+        return f"resampling, {numbers[1]} of {numbers[0]}" if numbers[2:] in ([], ["none", "cut"]) else None
+    if kind in ("uniform", "stochastic"):
+        return f"{kind}, {numbers[0]}"
+    threshold, _, error, angle = (float(n) for n in [*numbers, "0", "0"][:4])
+    ended = f"error {100 * error:g} %" if error else f"{100 * threshold:g} %"
+    return f"{kind}, {ended}" + (f", shared {angle:g}" if angle else "")
+
+
+def plot_table(table, path):
+    """Error against time of each scene, and time against the number of lights, from the table of a run."""
+    rows = [row for row in csv.DictReader(table_of(table).splitlines()) if row["paths"]]
+    made, axes = plotting.figure(rows=3, height=1320)
+    for ax, (scene, _, _) in zip(axes, SCENES):
+        ends = []
+        for row in rows:
+            name, error = name_of(row["method"]), float(row["relative_error_percent"])
+            if row["scene"] == scene and error > 0 and name:
+                x, colour = float(row["gather_seconds"]), plotting.colour(name)
+                ax.errorbar(x, error, float(row["its_standard_error"]), fmt="o", color=colour, markersize=5)
+                ends.append((name, x, error, colour))
+        plotting.log_axes(ax, "processor seconds of a pass", "relative RMSE of pixels [%]", percent=False)
+        ax.set_title(f"{scene.replace('_', ' ')}: a million lights, against the light of all of them", loc="left", fontsize=12)
+        plotting.label_ends(ax, ends)
+    ends = []
+    for colour, (scene, _, _) in zip((plotting.BLUE, plotting.ORANGE_RED), SCENES):
+        own = [row for row in rows if row["scene"] == scene and row["method"] == GROWTH and float(row["relative_error_percent"]) == 0]
+        x, y = [float(row["lights"]) for row in own], [float(row["gather_seconds"]) for row in own]
+        axes[2].plot(x, y, "o-", color=colour)
+        ends.append((f"{scene.replace('_', ' ')}, exponent {slope(own):.2f}", x[-1], y[-1], colour))
+    plotting.log_axes(axes[2], "number of lights", "processor seconds of a pass", percent=False)
+    axes[2].xaxis.set_major_locator(plotting.LogLocator())
+    axes[2].xaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"{v:,.0f}"))
+    axes[2].set_title("a cut that ends by an estimated error of 4 %, or at 4000 clusters", loc="left", fontsize=12)
+    plotting.label_ends(axes[2], ends)
+    plotting.save(made, path)
 
 
 def write(options, lines, growths):
     options.output.mkdir(parents=True, exist_ok=True)
     table, picture = options.output / "many_virtual_lights.csv", options.output / "many_virtual_lights.png"
     write_table(table, lines, growths)
-    draw(picture, lines, growths)
+    plot_table(table, picture)
     origin_of(options).stamp(picture, table)
 
 

@@ -8,6 +8,7 @@ references, one of volpath and one of long ray lights. The time to 5 % is that o
 an error that falls with the root of the time, above the bias, which is the part that pairs of seeds share: where that alone is
 above 5 %, there is none ("never"). `--quick`: the foggy room in less than a minute, numbers without a meaning.
 """
+import csv
 import math
 import sys
 from pathlib import Path
@@ -15,8 +16,10 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
+import plotting
 from claims import Claims
 from measure import series_error
+from origin import table_of
 from renders import approximate, luminance, main, write_csv
 
 FOG = Path(__file__).resolve().parent / "micro_fog.xml"
@@ -118,26 +121,31 @@ def study(mote, scene, label, quick):
     return rows
 
 
-def plot(rows, path):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    scenes = list(dict.fromkeys(row[0] for row in rows))
-    figure, axes = plt.subplots(1, len(scenes), figsize=(12, 4), sharey=True, squeeze=False)
-    for ax, scene in zip(axes[0], scenes):
-        for i, method in enumerate(METHODS):
-            for stage, style in (("choice", "o"), ("judged", "s")):
-                own = [row for row in rows if row[:2] == [scene, method] and row[3] == stage and math.isfinite(row[8])]
-                ax.errorbar([row[8] for row in own], [i] * len(own), xerr=[row[9] for row in own] if stage == "judged" else None,
-                            fmt=style, color="C0" if stage == "judged" else "0.7", zorder=2 if stage == "judged" else 1)
-            if not any(row[:2] == [scene, method] and row[3] == "judged" and math.isfinite(row[8]) for row in rows):
-                ax.text(0.98, i, "never", transform=ax.get_yaxis_transform(), ha="right", va="center")
-        ax.set(xscale="log", xlabel="processor seconds to a relative RMSE of 5 %", title=scene)
-        ax.set_yticks(range(len(METHODS)), list(METHODS))
-        ax.grid(True, axis="x", which="both", alpha=0.3)
-    axes[0][0].invert_yaxis()
-    figure.tight_layout()
-    figure.savefig(path, dpi=110)
+def plot_table(table, path):
+    """Seconds to the target of each method: candidates in grey, the chosen setting with its spread in the method's colour."""
+    rows = [row for row in csv.DictReader(table_of(table).splitlines()) if row["to_target"]]
+    scenes, methods = (list(dict.fromkeys(row[key] for row in rows)) for key in ("scene", "method"))
+    made, axes = plotting.figure(columns=len(scenes), height=420, sharey=True)
+    for ax, scene in zip(axes, scenes):
+        for i, method in enumerate(methods):
+            reached = [row for row in rows if (row["scene"], row["method"]) == (scene, method) and math.isfinite(float(row["to_target"]))]
+            tried = [float(row["to_target"]) for row in reached if row["stage"] == "choice"]
+            ax.plot(tried, [i] * len(tried), "o", color="#bbbbbb", markersize=5)
+            judged = [(float(row["to_target"]), float(row["spread"])) for row in reached if row["stage"] == "judged"]
+            for seconds, spread in judged:
+                ax.errorbar(seconds, i, xerr=spread, fmt="s", color=plotting.colour(method), markersize=7, capsize=3)
+            if not judged:
+                ax.text(0.98, i, "never", transform=ax.get_yaxis_transform(), ha="right", va="center", fontsize=10,
+                        bbox={"facecolor": "white", "edgecolor": "none", "pad": 2})
+        ax.set(xscale="log", xlabel="processor seconds to a relative RMSE of 5 %", ylim=(len(methods) - 0.5, -0.5))
+        ax.xaxis.set_major_locator(plotting.LogLocator(subs=(1, 2, 5)))
+        ax.xaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"{v:g}"))
+        ax.xaxis.set_minor_locator(plotting.NullLocator())
+        ax.set_title(scene, loc="left", fontsize=12)
+        ax.grid(True, axis="x", color="#e4e4e4")
+    axes[0].set_yticks(range(len(methods)), methods)
+    axes[0].set_ylabel("method")
+    plotting.save(made, path)
 
 
 def run(mote, quick, output):
@@ -153,7 +161,7 @@ def run(mote, quick, output):
             claims.check(f"{label}: ray lights take at most {most} of the time of VPLs with ABC to 5 % of error", f"{ratio:.3f} +- {error:.3f}", ratio <= most)
     write_csv(output.with_suffix(".csv"), ["scene", "method", "settings", "stage", "seconds", "error", "shared_error", "bias",
                                            "to_target", "spread"], rows)
-    plot(rows, output.with_suffix(".png"))
+    plot_table(output.with_suffix(".csv"), output.with_suffix(".png"))
     return claims.exit_code()
 
 

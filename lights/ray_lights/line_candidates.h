@@ -32,8 +32,9 @@ class LineCandidates {
     void add(std::uint32_t light, bool ray, float weight, const core::Lanes& expected);
     /// Sum of all importances, by lane.
     const core::Lanes& total() const { return total_; }
-    /// Lights that lanes connect to, each with steps of `steps` from a start within the first one; a step of
-    /// 0: to all that send any light, once. Of lanes with a start of 1 or more, to nothing.
+    /// Lights that lanes connect to, each by steps of `steps` through the sum of importances from `starts`
+    /// (relative to the first step). A step of 0 connects once to every light of positive importance; a start
+    /// of 1 or more connects to none.
     void choose(const core::Lanes& steps, const core::Lanes& starts, LineChoices& choices) const;
 
   private:

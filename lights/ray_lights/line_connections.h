@@ -2,9 +2,9 @@
 // lines: an eye ray through a medium, a ray light.
 //
 // Points on the lines are sampled (line_sampling.h), the values are divided by their densities: estimates of
-//   eye ray, ray light    integral over v and u of  T sigma_s f_p(x)  V*/w^2  f_p(y) sigma_s T P
+//   eye ray, ray light    integral over v and u of  T sigma_s f_p(x)  V* / w^2  f_p(y) sigma_s T P
 //   point, ray light      integral over u of        f*(x)    min(G*, b) V*    f_p(y) sigma_s T P
-//   eye ray, surface VPL  integral over v of        T sigma_s f_p(x)  V* C*(y)/w^2  I
+//   eye ray, surface VPL  integral over v of        T sigma_s f_p(x)  V* C*(y) / w^2  I
 // without visibility and transmittance between x and y (Novak et al. 2012, Eqs. 5 to 8).
 #pragma once
 
@@ -15,7 +15,7 @@ namespace mote::lights {
 
 /// An eye ray's segment in one medium.
 struct EyeLine {
-    MediumLine line;
+    MediumLine line;             ///< the segment
     core::Rgb throughput{0.0f};  ///< of the eye path up to the line's origin
     core::MediumState state;     ///< media on the line
     std::int32_t max_depth = 0;  ///< of lights; deeper ones are left out
@@ -23,14 +23,14 @@ struct EyeLine {
 
 /// Light at the receiver's end of a segment [W/(m^2 sr)], and the segment.
 struct LineConnection {
-    core::Rgb value;
-    core::Vec3 from, to;  ///< from the receiver to the light
+    core::Rgb value;      ///< without visibility and transmittance of the segment
+    core::Vec3 from, to;  ///< ends of the segment: at the receiver, at the light
 };
 
 /// Generator and counters of connections.
 struct LineContext {
-    core::Rng& rng;
-    core::TrackingCounters& counters;
+    core::Rng& rng;                    ///< of transmittance estimates
+    core::TrackingCounters& counters;  ///< of density lookups
 };
 
 /// An eye ray and a ray light; `u`: for the point on the light, and for the one on the eye ray. Nothing where

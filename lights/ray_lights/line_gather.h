@@ -22,24 +22,25 @@ struct LineCounters {
 /// Gathers for one task; keeps references.
 class LineGather {
   public:
-    /// `candidates`: so many ray lights, and so many VPLs, does a tile evaluate, 0: all.
+    /// `candidates`: number of ray lights, and of VPLs, whose importance a tile evaluates; 0: all.
     LineGather(const GatherContext& context, const RayLightSet& set, std::size_t candidates)
         : context_(context), set_(set), candidates_(candidates) {}
 
     /// Samples the candidates of the following calls, for `receivers` active lanes; fewer lanes have fewer.
     void sample_candidates(core::Rng& rng, int receivers);
-    /// Appends the importance of the candidates for eye rays, or points.
+    /// Appends the candidates with their importance for eye rays, or points.
     void evaluate(const EyeLines& eyes, LineCandidates& candidates) const;
     void evaluate(const PointReceivers& points, LineCandidates& candidates) const;
 
-    /// By lane: along eye rays, connected by steps of so much light. `tile` is written to: its states and
-    /// generators are those of the lanes; generators it has must be the lanes' own.
+    /// Radiance that eye rays gather along their segments, by lane. `steps`: light that one connection
+    /// carries, such as candidates.total() over the number of connections; 0: all lights are connected.
+    /// States and generators of `tile` are written to; generators that it has must be the lanes' own.
     TileLight to_eyes(const EyeLines& eyes, const LineCandidates& candidates, const core::Lanes& steps,
                       ReceiverTile& tile);
-    /// Light at points, with min(G*, bound) [1/m^2].
+    /// Radiance that points reflect or scatter, by lane, with min(G*, bound) [1/m^2].
     TileLight to_points(const LineCandidates& candidates, const core::Lanes& steps, float bound,
                         ReceiverTile& tile);
-    const LineCounters& counters() const { return counters_; }
+    const LineCounters& counters() const { return counters_; }  ///< of all gathers so far
 
   private:
     using Found = std::optional<LineConnection>;

@@ -14,42 +14,43 @@
 
 namespace mote::lights {
 
-/// Sixteen eye rays' parts; null: an idle lane.
+/// One segment of each of sixteen eye rays.
 struct EyeLines {
-    std::array<const EyeLine*, ReceiverLanes::width> of{};
+    std::array<const EyeLine*, ReceiverLanes::width> of{};  ///< by lane; null: idle
 };
 
-/// LineSegments that lines are cut into here.
+/// Number of pieces that the importance of a line is computed from.
 inline constexpr int line_segments = 3;
 
-/// Sixteen eye rays.
+/// Sixteen eye rays, as importance() needs them.
 struct EyeReceivers {
     core::Lanes x[line_segments + 1], y[line_segments + 1], z[line_segments + 1];  ///< ends of segments [m]
     core::Lanes
         weight[line_segments];  ///< throughput times what scatters in the middle, times the piece's length
-    core::Lanes direction_x, direction_y, direction_z;
-    core::Lanes near_squared;           ///< softening of 1/w^2 [m^2]
+    core::Lanes direction_x, direction_y, direction_z;  ///< unit
+    core::Lanes near_squared;                           ///< softening of 1/w^2 [m^2]
     core::Lanes extinction, asymmetry;  ///< between the ray and lights [1/m]; g of the phase function
     std::int32_t max_depth[ReceiverLanes::width] = {};  ///< of lights; 0: idle
-    bool directional = false;                           ///< does a phase function depend on direction?
+    bool directional = false;                           ///< true where a phase function depends on direction
 
-    explicit EyeReceivers(const EyeLines& eyes);
+    explicit EyeReceivers(const EyeLines& eyes);  ///< the lines need not outlive it
 };
 
-/// Sixteen points.
+/// Sixteen points, as importance() needs them.
 struct PointReceivers {
-    const ReceiverLanes& lanes;
+    const ReceiverLanes& lanes;      ///< positions, normals and BSDFs
     core::Lanes extinction;          ///< around them [1/m]
     float bound;                     ///< of the geometry term [1/m^2]
     core::Lanes weight, all_around;  ///< mean of the channels; 1 where light may come from everywhere, else 0
 
+    /// Keeps a reference to `points`. `extinction`: mean around each of them [1/m].
     PointReceivers(const ReceiverLanes& points, const core::Lanes& extinction, float bound);
 };
 
-/// A ray light.
+/// Importance of a ray light for each lane.
 void importance(const RayLight& light, const EyeReceivers& eyes, core::Lanes& out);
 void importance(const RayLight& light, const PointReceivers& points, core::Lanes& out);
-/// A VPL on a surface.
+/// Importance of a VPL on a surface for each lane.
 void importance(const VirtualPointLight& vpl, const EyeReceivers& eyes, core::Lanes& out);
 void importance(const VirtualPointLight& vpl, const PointReceivers& points, core::Lanes& out);
 

@@ -22,16 +22,17 @@ namespace mote::lights {
 
 /// Properties of a medium that lines need, found once.
 struct MediumKind {
-    const core::Medium* medium;
-    bool homogeneous, isotropic;
+    const core::Medium* medium;             ///< not null
+    bool homogeneous, isotropic;            ///< the same coefficients everywhere; an isotropic phase function
     core::MediumCoefficients coefficients;  ///< of a homogeneous medium
     float voxel_size;                       ///< of others [m]
     core::Bounds3 bounds;                   ///< of others
 };
 
-/// Those of a scene that scatter.
+/// The media of a scene that scatter light.
 class ScatteringMedia {
   public:
+    /// `media`: all media of a scene, such as RayQueries::media(); they must outlive this.
     explicit ScatteringMedia(std::span<const std::shared_ptr<core::Medium>> media);
     /// Null where the medium does not scatter, or is null.
     const MediumKind* find(const core::Medium* medium) const {
@@ -47,18 +48,20 @@ class ScatteringMedia {
 /// Number of cells of a line through a medium of voxels [m].
 std::uint32_t count_cells(float length, float voxel);
 
-/// In one medium.
+/// A segment of a ray within one medium.
 struct MediumLine {
     core::Vec3 origin{0.0f}, direction{0, 0, 1};  ///< unit direction
     float length = 0.0f;                          ///< [m]
-    const core::Medium* medium = nullptr;
-    core::Rgb sigma_t{0.0f},
-        sigma_s{0.0f};  ///< of a homogeneous medium [1/m]; of others the mean of what was seen
-    bool homogeneous = false, isotropic = true;
-    std::uint32_t cells = 1;                             ///< at most max_cells
-    std::array<float, max_cells> weights{};              ///< of cells
+    const core::Medium* medium = nullptr;         ///< null: no line
+    core::Rgb sigma_t{0.0f};                 ///< of a homogeneous medium, else the mean of its lookups [1/m]
+    core::Rgb sigma_s{0.0f};                 ///< likewise [1/m]
+    bool homogeneous = false;                ///< sigma_t is exact
+    bool isotropic = true;                   ///< the phase function is 1 / (4 pi)
+    std::uint32_t cells = 1;                 ///< at most max_cells
+    std::array<float, max_cells> weights{};  ///< of cells
     std::array<core::Rgb, max_cells + 1> transmittance;  ///< to the ends of cells; not of homogeneous media
 
+    /// Weights of the cells that the line has.
     std::span<const float> cell_weights() const { return std::span(weights).first(cells); }
     core::Vec3d at(double t) const { return core::Vec3d(origin) + t * core::Vec3d(direction); }  ///< [m]
     /// Cell of a distance.
@@ -78,10 +81,10 @@ std::optional<MediumLine> make_medium_line(const core::Ray& ray, float t0, float
 
 /// A ray up to a distance, with the media at ray.t_min and the boundaries on the way, sorted by distance.
 struct RayThroughMedia {
-    const core::Ray& ray;
-    float t_end;
-    const core::MediumState& state;
-    std::span<const core::SurfaceHit> boundaries;
+    const core::Ray& ray;                          ///< unit direction
+    float t_end;                                   ///< [m]
+    const core::MediumState& state;                ///< at ray.t_min
+    std::span<const core::SurfaceHit> boundaries;  ///< before t_end, nearest first
 };
 
 /// Calls visit(line, state, transmittance) for all parts of a ray in media that scatter: `state` holds the

@@ -16,7 +16,7 @@ namespace mote::lights {
 
 /// The part of a segment in one medium.
 struct RayLight {
-    MediumLine line;
+    MediumLine line;          ///< where light scatters
     core::Rgb power{0.0f};    ///< that arrives at the line's origin, over the number of paths [W]
     std::uint32_t depth = 1;  ///< vertices of the path after the light, with one on this line
     std::uint32_t path = 0;   ///< index of the light path
@@ -24,8 +24,8 @@ struct RayLight {
 
 /// The ray lights of one set of light paths, in path order, and the VPLs that they left on surfaces.
 struct RayLightSet {
-    std::vector<RayLight> rays;
-    VplSet surface;  ///< without states: connections are traced from receivers
+    std::vector<RayLight> rays;  ///< in path order
+    VplSet surface;              ///< without states: connections are traced from receivers
     /// Sums of what lights send out, about, up to each of them; the last is the total.
     std::vector<double> ray_power, surface_power;
 
@@ -47,9 +47,10 @@ RayLightSet trace_ray_lights(const core::LitScene& scene, const ScatteringMedia&
 /// lights.
 class PowerSampling {
   public:
-    /// `power`: sums up to each light, which must outlive this; `most`: so many; 0: all.
+    /// `power`: sums up to each light, which must outlive this; `most`: number of samples; 0: all.
     PowerSampling(std::span<const double> power, std::size_t most)
         : power_(power), all_(most == 0 || most >= power.size()), count_(all_ ? power.size() : most) {}
+    /// Number of samples; 0 where no light has power.
     std::size_t count() const { return !power_.empty() && power_.back() > 0.0 ? count_ : 0; }
     /// The n-th of count(), by a random start in [0, 1) that all of a receiver share. Its weight is one over
     /// its expected number of samples.

@@ -318,6 +318,36 @@ typedef struct mote_epipolar_options {
 MOTE_API mote_status mote_epipolar(const mote_epipolar_options* options, float* light, size_t count,
                                    uint64_t* marched);
 
+typedef struct mote_upsample_options {
+    size_t struct_size;
+    int width, height;
+    double focal_length;   /* of a pinhole camera at the origin [pixels] */
+    const float* position; /* [height][width][3], of first surfaces, in camera space [m]; not finite: none */
+    const float* normal;   /* [height][width][3], unit, towards the camera */
+    const float* albedo;   /* [height][width][3], what light is interpolated without; null: 1 everywhere */
+    int spacing;           /* one pixel of so many is shaded, in both directions */
+    void* user;
+    /* Radiance of the pixel in column x and row y. In the thread of mote_upsample(). */
+    void (*shade)(void* user, int x, int y, float radiance[3]);
+} mote_upsample_options;
+
+/* Bilateral upsampling: light of all pixels from those of a lattice, and of those that no neighbour fits.
+ * Fills light [height][width][3], room for `count` floats; `shaded` (may be null): calls of `shade`. */
+MOTE_API mote_status mote_upsample(const mote_upsample_options* options, float* light, size_t count,
+                                   uint64_t* shaded);
+
+#define MOTE_NO_ITEM 0xffffffffu /* a pixel that shows no item */
+typedef struct mote_visibility_query {
+    uint32_t item;
+    int x0, y0, x1, y1; /* pixels x0 <= x < x1, y0 <= y < y1 */
+} mote_visibility_query;
+
+/* Visibility queries (docs/methods/visibility.md): of items [height][width], below `item_count` or
+ * MOTE_NO_ITEM, how many pixels of an item lie in a rectangle, for each query. */
+MOTE_API mote_status mote_count_visible(const uint32_t* items, int width, int height, uint32_t item_count,
+                                        const mote_visibility_query* queries, size_t query_count,
+                                        uint32_t* pixels);
+
 /* A hierarchy over lights, of which one is sampled for a receiver in proportion to what it may contribute,
  * unoccluded (Estevez and Kulla 2018). */
 typedef struct mote_light_tree mote_light_tree;

@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
@@ -35,6 +36,7 @@ struct Picture {
 /// [row][column][3] as colours; empty for none. Throws std::invalid_argument for another shape.
 std::vector<core::Rgb> colours(const Pixels& pixels);
 
+void bind_algorithms(nb::module_& m);
 void bind_errors(nb::module_& m);
 void bind_scenes(nb::module_& m);
 void bind_pictures(nb::module_& m);

@@ -68,4 +68,5 @@ NB_MODULE(_mote, m) {
     python::bind_pictures(m);
     python::bind_rendering(m);
     python::bind_viewing(m);
+    python::bind_algorithms(m);
 }

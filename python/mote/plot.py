@@ -128,7 +128,7 @@ def _draw(lines: List[tuple], style: Mapping[str, Any], output: Path) -> None:
     except ImportError as problem:
         raise ImportError(f"{output.suffix} needs matplotlib (pip install matplotlib); .tex does not") from problem
     matplotlib.use("Agg")
-    from matplotlib import pyplot
+    from matplotlib import pyplot, ticker
     settings = {"font.size": style.get("font", 8), "pdf.fonttype": 42, "svg.hashsalt": "mote", "axes.linewidth": 0.6}
     with matplotlib.rc_context(settings):
         figure, axes = pyplot.subplots(figsize=(style.get("width", 3.4), style.get("height", 2.6)), layout="constrained")
@@ -142,6 +142,10 @@ def _draw(lines: List[tuple], style: Mapping[str, Any], output: Path) -> None:
             axes.set_xlim(style["seconds"])
         if style.get("errors"):
             axes.set_ylim([100 * e for e in style["errors"]])
+        for axis in (axes.xaxis, axes.yaxis):  # 1, 2, 5, 10, not powers of ten: ranges are often less than one
+            axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+            axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+            axis.set_minor_locator(ticker.NullLocator())
         axes.grid(True, which="major", linewidth=0.4, color="#d4d4d4")
         axes.legend(frameon=False)
         dates = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(output.suffix.lower())

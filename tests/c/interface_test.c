@@ -551,6 +551,56 @@ static void test_epipolar(void) {
     CHECK(mote_epipolar(&options, light, 3 * width * height, NULL) == MOTE_INVALID_ARGUMENT);
 }
 
+/* A corner of a wall at z = 4 and a floor at y = 1, seen along z. */
+static void shade_plane(void* user, int x, int y, float radiance[3]) {
+    const float* normals = ((const float**)user)[0];
+    ++*((uint64_t**)user)[1];
+    radiance[0] = radiance[1] = radiance[2] = normals[3 * (y * 48 + x) + 1] < -0.5f ? 2.0f : 1.0f;
+}
+static void test_upsample(void) {
+    enum { width = 48, height = 48, pixels = width * height };
+    static float position[3 * pixels], normal[3 * pixels], light[3 * pixels];
+    mote_upsample_options options;
+    uint64_t called = 0, shaded = 0;
+    void* user[2];
+    int i;
+    user[0] = normal, user[1] = &called;
+    memset(normal, 0, sizeof normal);
+    for (i = 0; i < pixels; ++i) {
+        const float x = ((float)(i % width) + 0.5f) / width - 0.5f,
+                    y = ((float)(i / width) + 0.5f) / height - 0.5f;
+        const int is_floor = y > 0.25f;
+        const float z = is_floor ? 1 / y : 4;
+        position[3 * i] = x * z, position[3 * i + 1] = y * z, position[3 * i + 2] = z;
+        normal[3 * i + (is_floor ? 1 : 2)] = -1;
+    }
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options, options.width = width, options.height = height;
+    options.focal_length = width, options.position = position, options.normal = normal, options.spacing = 3;
+    options.shade = shade_plane, options.user = user;
+    CHECK(mote_upsample(&options, light, 3 * pixels - 1, NULL) == MOTE_BUFFER_TOO_SMALL);
+    CHECK(mote_upsample(&options, light, 3 * pixels, &shaded) == MOTE_OK);
+    CHECK(shaded == called && shaded >= pixels / 9 && shaded < pixels / 4);
+    for (i = 0; i < pixels; ++i) CHECK(fabs(light[3 * i] - (normal[3 * i + 1] < -0.5f ? 2 : 1)) < 1e-3);
+    options.spacing = 0;
+    CHECK(mote_upsample(&options, light, 3 * pixels, NULL) == MOTE_INVALID_ARGUMENT);
+    options.spacing = 3, options.shade = NULL;
+    CHECK(mote_upsample(&options, light, 3 * pixels, NULL) == MOTE_INVALID_ARGUMENT);
+}
+
+static void test_count_visible(void) {
+    const uint32_t items[] = {0, 0, 1, MOTE_NO_ITEM, 0, 1};
+    const mote_visibility_query queries[] = {
+        {0, 0, 0, 3, 2}, {0, 1, 0, 3, 2}, {1, 2, 0, 9, 9}, {2, 0, 0, 3, 2}};
+    uint32_t pixels[4];
+    CHECK(mote_count_visible(items, 3, 2, 3, queries, 4, pixels) == MOTE_OK);
+    CHECK(pixels[0] == 3 && pixels[1] == 2 && pixels[2] == 2 && pixels[3] == 0);
+    CHECK(mote_count_visible(items, 3, 2, 1, queries, 1, pixels) == MOTE_INVALID_ARGUMENT); /* item 1 */
+    CHECK(mote_count_visible(items, 3, 2, 2, queries, 4, pixels) ==
+          MOTE_INVALID_ARGUMENT); /* query of item 2 */
+    CHECK(mote_count_visible(NULL, 3, 2, 3, queries, 4, pixels) == MOTE_INVALID_ARGUMENT);
+}
+
 /* Samples come as often as the probabilities say, which sum to 1. */
 static void test_light_tree(void) {
     enum { count = 21, samples = 20000 };
@@ -638,6 +688,8 @@ int main(int argc, char** argv) {
     test_sequence();
     test_epipolar();
     test_light_tree();
+    test_upsample();
+    test_count_visible();
     test_leaks();
     printf("%d checks, %d failures\n", checks, failures);
     return failures > 0;

@@ -80,6 +80,14 @@ def public_headers():
     return [line for line in lines if line and not line.startswith("#")]
 
 
+def python_with_numpy():
+    """For the plugin of Python integrators: this interpreter, or Debian's."""
+    for python in (sys.executable, "/usr/bin/python3"):
+        if Path(python).is_file() and subprocess.run([python, "-c", "import numpy"], capture_output=True).returncode == 0:
+            return [f"-DPython3_EXECUTABLE={python}"]
+    return []
+
+
 def build_consumer(prefix):
     consumer, build = work / "consumer", work / "consumer_build"
     shutil.rmtree(build, ignore_errors=True)
@@ -89,7 +97,7 @@ def build_consumer(prefix):
     run("cmake", "-S", consumer, "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}",
         f"-DMOTE_EXAMPLES={arguments.source}/examples", f"-DCMAKE_CXX_COMPILER={arguments.compiler}",
         "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
-        *launcher)
+        *python_with_numpy(), *launcher)
     run("cmake", "--build", build)
     return build
 
@@ -115,7 +123,7 @@ def check_examples(build, prefix):
     run(prefix / "bin/mote", "render", arguments.source / "examples/ssbc/room.xml", "--passes", 4, "--auxiliary",
         "--quiet", "-o", room)
     for folder in sorted(p for p in (arguments.source / "examples").iterdir() if p.is_dir() and p.name != "notebook"):
-        if folder.name.startswith("my_"):
+        if folder.name.startswith("my_") or folder.name == "python_integrator":
             continue  # plugins: check_plugins()
         more = {"ssbc": [room, work / "compensated.exr"],
                 "render_scene": [box, work / "box.exr", 1, "film.width=32", "film.height=24"],
@@ -152,7 +160,12 @@ def check_pkg_config(prefix):
 def check_plugins(build, prefix):
     """The moved command renders with the plugins of the examples, which another compilation made."""
     uses = {"my_integrator": ["--integrator", "my_ambient_occlusion", "-D", "integrator.distance=0.3"],
-            "my_selector": ["--integrator", "mote_vpl", "-D", "integrator.selection=by_intensity"]}
+            "my_selector": ["--integrator", "mote_vpl", "-D", "integrator.selection=by_intensity"],
+            "python_integrator": ["--integrator", "python", "-D",
+                                  f"integrator.file={arguments.source}/examples/python_integrator/ambient_occlusion.py"]}
+    if not (build / "examples/python_integrator/python_integrator.so").is_file():
+        print("no headers of Python, or no NumPy: python_integrator is not tested")
+        del uses["python_integrator"]
     for name, words in uses.items():
         picture = work / f"{name}.exr"
         run(prefix / "bin/mote", "render", arguments.source / "scenes/cornell_box.xml", "--plugin",

@@ -4,6 +4,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import check_figures
 import check_gifs
 import check_length
 import check_links
@@ -38,7 +39,15 @@ One sentence that says once what a reader can do after reading this page, and no
 ≈ 33 = box / path; s to 5 %
 -->
 """
+SVG = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 960 560" font-size="13">
+<g transform="translate(100 0)"><text x="600" y="100" font-weight="bold">layers</text><text x="600" y="120">ray lights</text></g>
+<text style="font: 12px sans-serif; text-anchor: middle" transform="rotate(-90 18 270)" x="18" y="270">relative RMSE</text>
+<text x="400" y="540" text-anchor="middle">wall time</text>
+<g id="difference"/><g id="colour bar"><text x="900" y="300">bias [%]</text></g>
+</svg>
+"""
 TREE = {
+    "docs/gallery/plot.svg": SVG,
     "README.md": README,
     "docs/page.md": PAGE,
     "docs/guide.md": "# Guide\n",
@@ -84,6 +93,16 @@ CASES = [  # check, file, what is replaced by what, what is found
     (check_numbers, "docs/gallery/table.csv", "0123456789ab", "0123456789ab+", ""),
     (check_length, "docs/page.md", "# Page", "# Page\n" + "long " * check_length.MAX_WORDS, "the pages have 4"),
     (check_length, "docs/design.md", "# Design", "# Design\n" + "long " * check_length.MAX_INSIDE, "docs/design.md: 500"),
+    (check_figures, "docs/gallery/plot.svg", ">layers<", ">layers with a far longer name than fits beside the axes<", "reaches out of the canvas"),
+    (check_figures, "docs/gallery/plot.svg", "translate(100 0)", "translate(400 0)", "'layers' reaches out of the canvas"),
+    (check_figures, "docs/gallery/plot.svg", "translate(100 0)", "translate(100 0) scale(0.8)", "'layers' has 7.8 points"),
+    (check_figures, "docs/gallery/plot.svg", "font: 12px", "font: 11px", "'relative RMSE' has 8.2 points"),
+    (check_figures, "docs/gallery/plot.svg", "relative RMSE", "error", "no vertical axis"),
+    (check_figures, "docs/gallery/plot.svg", "rotate(-90 18 270)", "translate(100 0)", "no vertical axis"),
+    (check_figures, "docs/gallery/plot.svg", "wall time", "abscissa", "no horizontal axis"),
+    (check_figures, "docs/gallery/plot.svg", 'y="120"', 'y="105"', "'ray lights' lies on 'layers'"),
+    (check_figures, "docs/gallery/plot.svg", 'id="colour bar"', "", "no colour bar"),
+    (check_figures, "docs/gallery/plot.svg", "bias [%]", "0.5", "no colour bar"),
     (check_numbers, "docs/other.checks", "33 =", "34 =", "34' is not in the text"),
 ]
 LINKED = "\n[table](gallery/table.csv)\n"
@@ -118,7 +137,7 @@ def gif_offences(palette_of):
 
 
 def main():
-    judged = [(f"{check.__name__}: a sound tree", found(check, []), "") for check in (check_length, check_links, check_names, check_numbers, check_words)]
+    judged = [(f"{check.__name__}: a sound tree", found(check, []), "") for check in (check_figures, check_length, check_links, check_names, check_numbers, check_words)]
     judged += [(f"{check.__name__}: {new!r}", found(check, [(file, old, new)]), expected) for check, file, old, new, expected in CASES]
     dirty = ("docs/gallery/table.csv", "0123456789ab", "0123456789ab+")
     judged += [("a table with changes", found(check_numbers, [dirty, ("docs/page.md", "\n<!-- docs/gallery/table", LINKED + "\n<!-- docs/gallery/table")]),

@@ -1,5 +1,6 @@
 // The parts of mote trade on hand-made records: curves, front, times, turns, CSV, JSON lines, pictures.
 #include <cmath>
+#include <set>
 
 #include "core/objects/error.h"
 #include "tests/support/catch.h"
@@ -284,4 +285,23 @@ TEST_CASE("The plot shows every method by name, the front and the floor, and no 
                         ContainsSubstring("judges down to 15 %"));
     CHECK_THAT(svg, !ContainsSubstring("nan") && !ContainsSubstring("inf"));
     CHECK_THAT(plot_svg({}, 0.0, "empty"), ContainsSubstring("</svg>"));
+}
+
+TEST_CASE("An integrator has one colour in all plots, and no two of eleven methods share one", "[trade]") {
+    std::vector<Curve> curves(11);
+    curves[3].integrator = "mote_vpl", curves[7].integrator = "path", curves[8].integrator = "mote_vpl";
+    const std::vector<std::string> colours = curve_colours(curves);
+    CHECK(std::set<std::string>(colours.begin(), colours.end()).size() == 11);
+    const std::vector<Curve> others = {curves[7], curves[3]};
+    CHECK(curve_colours(others) == std::vector<std::string>{colours[7], colours[3]});
+}
+
+TEST_CASE("The longest name of a method ends within the plot", "[trade]") {
+    const std::string name = "multidimensional lightcuts, rays shared";
+    auto curves = make_curves(std::vector{record(name, 1, 1, 3.0, 0.2), record(name, 2, 1, 4.0, 0.1)}, 0.0);
+    const std::string svg = plot_svg(curves, 0.0, "title");
+    const std::size_t label = svg.rfind("<text x=\"");
+    REQUIRE(label != std::string::npos);
+    // Bold letters of 13 pixels are 8.2 wide on average, at most; the plot is 960 wide.
+    CHECK(std::stod(svg.substr(label + 9)) + 8.2 * double(name.size()) <= 960.0);
 }

@@ -1,0 +1,89 @@
+"""Plots of the gallery for a talk: one colour a method, letters of at least 9 points at 960 pixels, labels at the lines and inside the
+canvas, the measure named on each axis, signed differences in blue and red with a colour bar.
+
+tests/pages/check_figures.py checks these in the SVG files of docs/gallery; save() writes an SVG beside each PNG.
+"""
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+WIDTH = 960  # pixels
+DPI = 100
+RMSE = "relative RMSE"
+# By the beginning of a method's name: Okabe and Ito's colours, and Tol's where there are more.
+BLUE, ORANGE_RED, GREEN, PINK, ORANGE, SKY, BLACK = "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"
+WINE, OLIVE, INDIGO, GREY, TEAL, MAROON, PURPLE, BROWN, ROSE = ("#882255", "#999933", "#332288", "#777777", "#44aa99", "#661100",
+                                                               "#aa4499", "#8c510a", "#cc6677")
+COLOURS = {
+    "mote path tracer": BLUE, "path": BLUE, "volpath": BLUE, "volpath equi-angular": SKY, "volpath, equi-angular": SKY,
+    "bidirectional": SKY, "mote layers": ORANGE_RED, "layers": ORANGE_RED, "layers, far light": ORANGE, "photon": ORANGE,
+    "mote VPL": GREEN, "VPL": GREEN, "64 paths' VPLs": GREEN, "none": GREEN, "VPL unbounded": MAROON, "VPL, exact": INDIGO,
+    "exact": INDIGO, "VPL, 1 step": BROWN, "VPL, 2 steps": BLACK, "approximate": BROWN, "screen space": OLIVE,
+    "screen space + ABC": GREY, "VPLs, ABC": BROWN, "spherical": GREY, "ray lights": PINK, "beam lights": PURPLE,
+    "lightcuts": INDIGO, "multidimensional": WINE, "stochastic": BLACK, "light tree": TEAL, "matrix": OLIVE, "resampling": SKY,
+    "atlas": BROWN, "atlas, final": ROSE, "bundles from": WINE, "VPL and bundles": PURPLE,
+    "every pixel": BLACK, "sub-sampled": GREY, "128 lines, 32": INDIGO, "128 lines, 8": SKY, "512 lines, 32": MAROON,
+    "512 lines, 8": ROSE, "VPL maps 12": SKY, "VPL maps 24": BLUE, "VPL imperfect": ORANGE, "VPL volumetric maps 32": SKY,
+    "VPL volumetric maps 64": BLUE, "Mitsuba": OLIVE, "Cycles": PURPLE, "Cycles, guided": BLACK}
+OTHERS = [BLACK, OLIVE, GREY]
+
+
+def colour(method):
+    """Of the longest known beginning of the name; one of OTHERS for a name without any."""
+    known = [name for name in COLOURS if method.startswith(name)]
+    return COLOURS[max(known, key=len)] if known else OTHERS[sum(map(ord, method)) % len(OTHERS)]
+
+
+def figure(columns=1, height=520, rows=1, **options):
+    """A figure of 960 pixels, and its axes in a list."""
+    plt.rcParams.update({"font.size": 10, "svg.fonttype": "none", "svg.hashsalt": "mote"})
+    made, axes = plt.subplots(rows, columns, figsize=(WIDTH / DPI, height / DPI), dpi=DPI, layout="constrained", squeeze=False, **options)
+    made.get_layout_engine().set(w_pad=0.1, h_pad=0.08)
+    return made, list(axes.flat)
+
+
+def log_axes(axes, x, y, percent=True):
+    """Both axes in logarithms with ticks at 1, 2 and 5; x and y: measures with their units. percent: y is a fraction."""
+    axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
+    for axis, scale, unit in ((axes.xaxis, 1, ""), (axes.yaxis, 100 if percent else 1, " %" if percent else "")):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(FuncFormatter(lambda v, _, s=scale, u=unit: f"{s * v:g}{u}"))
+        axis.set_minor_locator(NullLocator())
+    axes.grid(True, color="#e4e4e4", linewidth=0.8)
+    axes.set_axisbelow(True)
+
+
+def label_ends(axes, ends, gap=15, size=10):
+    """Names right of the axes, beside the points (name, x, y, colour), pushed apart where they would overlap; the layout makes room
+    for them."""
+    axes.figure.canvas.draw()
+    placed, last = [], -1e9
+    for name, x, y, own in sorted(ends, key=lambda end: end[2]):
+        at = max(axes.transData.transform((x, y))[1], last + gap)
+        placed.append((name, x, y, own, at))
+        last = at
+    top = axes.transAxes.transform((0, 1))[1]
+    for i in reversed(range(len(placed))):
+        name, x, y, own, at = placed[i]
+        at = min(at, top - gap * (len(placed) - 1 - i))
+        shown = axes.transAxes.inverted().transform((0, at))[1]
+        axes.annotate(name, (x, y), xytext=(1.03, shown), textcoords="axes fraction", va="center", fontsize=size, color=own,
+                      fontweight="bold", arrowprops={"arrowstyle": "-", "color": own, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 3, "relpos": (0, 0.5)})
+
+
+def difference(axes, values, scale, measure):
+    """A signed difference: blue too dark, red too bright, full colour at `scale`; the colour bar names the measure."""
+    shown = axes.imshow(values, cmap="RdBu_r", vmin=-scale, vmax=scale, interpolation="nearest")
+    shown.set_gid("difference")
+    bar = axes.figure.colorbar(shown, ax=axes, shrink=0.9)
+    bar.ax.set_gid("colour bar")
+    bar.set_label(measure)
+    axes.set(xticks=[], yticks=[])
+
+
+def save(made, path):
+    """As PNG, or SVG by the suffix; without the date."""
+    metadata = {"Date": None} if str(path).endswith(".svg") else {}
+    made.savefig(path, dpi=DPI, metadata=metadata)
+    plt.close(made)

@@ -1,0 +1,89 @@
+"""Methods over arrays and functions of another renderer."""
+from __future__ import annotations
+
+from typing import Callable, Optional, Sequence, Tuple
+
+import numpy as np
+
+from . import _mote
+
+Radiance = Sequence[float]
+_NO_ITEM = 0xffffffff
+
+
+def _floats(values, shape) -> np.ndarray:
+    return np.ascontiguousarray(np.broadcast_to(np.asarray(values, np.float32), shape))
+
+
+class LightTree:
+    """A hierarchy over lights, of which one is sampled for a receiver in proportion to what it may contribute, unoccluded (Estevez
+    and Kulla 2018).
+
+    lower, upper: (n, 3), boxes that hold the lights [m]. intensity: (n), along the normal, mean of the channels [W/sr], above 0.
+    normal: (n, 3), unit, lights shine within a right angle of it; zero, the default: to all sides.
+    """
+
+    def __init__(self, lower, upper, intensity, normal=0.0) -> None:
+        shape = (len(intensity), 3)
+        self._tree = _mote.light_tree(_floats(lower, shape), _floats(upper, shape), _floats(normal, shape),
+                                      [float(i) for i in intensity])
+
+    def __len__(self) -> int:
+        return len(self._tree)
+
+    def sample(self, position: Sequence[float], u: float, normal: Sequence[float] = (0, 0, 0)) -> Tuple[int, float]:
+        """Index and probability of a light, sampled by u in [0, 1). normal: unit, on the side from which light counts; zero: from
+        all sides."""
+        return self._tree.sample(tuple(position), tuple(normal), u)
+
+    def probability(self, position: Sequence[float], light: int, normal: Sequence[float] = (0, 0, 0)) -> float:
+        """Probability of sample() returning this light; over all lights they sum to 1."""
+        return self._tree.probability(tuple(position), tuple(normal), light)
+
+
+def epipolar(depth: np.ndarray, march: Callable[[float, float, float], Radiance], *, focal_length: float, lamp: Sequence[float],
+             far_distance: float, centre: Optional[Sequence[float]] = None, lines: int = 512, samples: int = 16,
+             tolerance: float = 0.05) -> Tuple[np.ndarray, int]:
+    """Light that media scatter once towards a pinhole camera, (height, width, 3), from few rays along epipolar lines
+    (docs/methods/epipolar.md); and the number of calls of `march`.
+
+    depth: (height, width), along the camera's axis [m]; not above 0, or not finite: nothing is there, and the ray ends at
+    far_distance [m]. march(x, y, distance): radiance, three numbers, scattered before the distance [m] into the ray through (x, y)
+    [pixels; the middle of the first one is (0.5, 0.5)]. lamp: in camera space, x right, y down, z forward [m]. focal_length and
+    centre (where the axis meets the picture, by default the middle) in pixels. lines: around the whole border. samples: of a line
+    before it is refined. tolerance: of interpolation, relative. Raises ValueError.
+    """
+    depth = np.ascontiguousarray(depth, np.float32)
+    height, width = depth.shape
+    middle = tuple(map(float, centre)) if centre is not None else (width / 2, height / 2)
+    return _mote.epipolar(depth, march, float(focal_length), tuple(map(float, lamp)), middle, float(far_distance), lines, samples,
+                          float(tolerance))
+
+
+def upsample(position: np.ndarray, normal: np.ndarray, shade: Callable[[int, int], Radiance], *, focal_length: float,
+             spacing: int = 4, albedo: Optional[np.ndarray] = None) -> Tuple[np.ndarray, int]:
+    """Light of all pixels, (height, width, 3), from those of a lattice by bilateral upsampling, and of those that no neighbour fits;
+    and the number of calls of `shade`.
+
+    position, normal: (height, width, 3), of first surfaces in the space of a pinhole camera at the origin [m]; normals are unit and
+    towards the camera; positions that are not finite have no light. shade(x, y): radiance of the pixel in column x and row y, three
+    numbers. spacing: one pixel of so many is shaded, in both directions. focal_length in pixels. albedo: what light is interpolated
+    without; None: 1. Raises ValueError.
+    """
+    images = [None if image is None else np.ascontiguousarray(image, np.float32) for image in (position, normal, albedo)]
+    return _mote.upsample(*images, float(focal_length), spacing, shade)
+
+
+def count_visible(items: np.ndarray, rectangles: Sequence[Sequence[int]], count: Optional[int] = None) -> np.ndarray:
+    """Number of pixels of an item in a rectangle, for each query (docs/methods/visibility.md).
+
+    items: (height, width) integers, the item that a pixel shows; below 0: none. rectangles: (n, 5), rows of item, x0, y0, x1, y1:
+    pixels x0 <= x < x1, y0 <= y < y1. count: number of items, by default as many as the picture or a query names.
+    """
+    items = np.asarray(items, np.int64)
+    queries = np.ascontiguousarray(rectangles, np.int64).reshape(-1, 5)
+    if count is None:
+        count = 1 + max(int(items.max(initial=-1)), int(queries[:, 0].max(initial=-1)))
+    if items.max(initial=-1) >= count:
+        raise ValueError(f"the picture shows item {items.max()}, and there are {count}")
+    return _mote.count_visible(np.where(items < 0, _NO_ITEM, items).astype(np.uint32), count, queries)
