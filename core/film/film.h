@@ -38,6 +38,7 @@ struct KeptSums {
     static KeptSums from_bits(std::uint32_t bits) { return {(bits & 1u) != 0, (bits & 2u) != 0}; }
 };
 
+/// Sums over passes, pixel by pixel and layer by layer: the picture is their mean.
 class Film {
   public:
     static constexpr std::uint32_t max_passes = ExactSums::max_terms;  ///< of a part
