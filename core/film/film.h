@@ -32,11 +32,13 @@ namespace mote::core {
 struct KeptSums {
     bool all_squares = false;  ///< squares of every layer
     bool halves = false;       ///< sums over the passes of odd index
-    /// For files.
+    /// Number that files hold.
     std::uint32_t bits() const { return (all_squares ? 1u : 0u) | (halves ? 2u : 0u); }
+    /// Inverse of bits().
     static KeptSums from_bits(std::uint32_t bits) { return {(bits & 1u) != 0, (bits & 2u) != 0}; }
 };
 
+/// Sums over passes, pixel by pixel and layer by layer: the picture is their mean.
 class Film {
   public:
     static constexpr std::uint32_t max_passes = ExactSums::max_terms;  ///< of a part
