@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "core/render/counted_work.h"
@@ -100,7 +101,7 @@ std::vector<float> trial_pass(const Scene& scene, const RenderOptions& options, 
     trace_pass<Media>(scene, options, settings, pass, guide, counters,
                       [&](std::size_t, std::size_t first, EyePacket<Media>& packet) {
                           trace_paths(scene, settings, packet);
-                          for (std::size_t i = 0; i < 16 && first + i < pass.paths; ++i)
+                          for (std::size_t i = 0; i < EyePacket<Media>::width && first + i < pass.paths; ++i)
                               for (const Rgb& l : packet[int(i)].sum.light) light[first + i] += average(l);
                       });
     return light;
