@@ -5,7 +5,7 @@ namespace mote::fuzz {
 
 namespace {
 
-const char* const scene = R"(LookAt 0 1 -6 0 1 0 0 1 0
+const char* const pbrt_scene = R"(LookAt 0 1 -6 0 1 0 0 1 0
 Camera "perspective" "float fov" [40] "float lensradius" .1 "float focaldistance" 6
 Film "rgb" "integer xresolution" 4 "integer yresolution" 3 "float iso" 50
 Sampler "stratified" "integer xsamples" 2 PixelFilter "triangle" "float xradius" 1
@@ -38,6 +38,6 @@ Shape "bilinearmesh" "point3 P" [0 0 0 1 0 0 0 1 0 1 1 1] Shape "disk" "float ra
 
 }  // namespace
 
-std::vector<Bytes> pbrt_scene_seeds() { return {bytes_of(scene)}; }
+std::vector<Bytes> pbrt_scene_seeds() { return {bytes_of(pbrt_scene)}; }
 
 }  // namespace mote::fuzz

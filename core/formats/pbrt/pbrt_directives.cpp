@@ -288,9 +288,13 @@ void PbrtReader::shape(PbrtText& text, const SourceLocation& where) {
     if (state_.moves)
         files_.fault(where, "shapes that move have no counterpart here",
                      "they stand as at the shutter's opening");
+    // A scene has one outermost medium here, that of the camera; others are found by the shapes around a
+    // point.
+    const bool boundary = state_.inside != state_.outside,
+               outermost = boundary && state_.outside == view_.medium;
     attempt([&] {
-        shapes_.add(o, {state_.to_world, state_.reverse_orientation, state_.material, state_.inside,
-                        state_.outside, state_.light.get()});
+        shapes_.add(o, {state_.to_world, state_.reverse_orientation, state_.material,
+                        boundary ? state_.inside : "", outermost ? state_.outside : "", state_.light.get()});
     });
 }
 
