@@ -122,8 +122,11 @@ class FeatureRow {
             const float t = std::fabs(cosine) > 1e-6f ? glm::dot(mean.position - ray.origin, n) / cosine : d;
             return ray.at(t);
         };
-        const Vec3 a = meet(right) - meet(here), b = meet(down) - meet(here), area = glm::cross(a, b);
-        const float squared = glm::dot(area, area);
+        // In footprints: the fourth power of a pixel in a scene of nanometres is no number.
+        const float unit = result.footprint;
+        const Vec3 a = (meet(right) - meet(here)) / unit, b = (meet(down) - meet(here)) / unit,
+                   area = glm::cross(a, b);
+        const float squared = glm::dot(area, area) * unit;
         if (!(squared > 0.0f) || !is_finite(squared)) return result;
         result.along_x = glm::cross(b, area) / squared, result.along_y = glm::cross(area, a) / squared;
         return result;

@@ -102,9 +102,9 @@ TEST_CASE("mote convert: cameras, wrong words, files that must stay", "[command]
     CHECK(read_file(folder.file("out_files/texture_0.png")) == png);
     CHECK(contains(refusal({"convert", "room.gltf", "out.xml", "-D", "camera=Ey"}, 1), "did you mean 'Eye'"));
     CHECK(contains(refusal({"convert", "room.gltf", "out.xml", "-D", "size=3"}, 2), "camera=NAME"));
-    CHECK(contains(refusal({"convert", "room.gltf", "out.png"}, 2), "from .gltf or .glb to .xml"));
+    CHECK(contains(refusal({"convert", "room.gltf", "out.png"}, 2), "from .gltf, .glb or .pbrt to .xml"));
     CHECK(contains(refusal({"convert", "out_files/texture_0.png", "out.xml"}, 2),
-                   "from .gltf or .glb to .xml"));
+                   "from .gltf, .glb or .pbrt to .xml"));
     CHECK(contains(refusal({"convert", "room.gltf", "out.xml", "--half"}, 2), "are for pictures"));
     CHECK(contains(refusal({"export", "room.gltf", "--to", "mitsuba3", "-o", "folder"}, 1), "mote convert"));
     CHECK(contains(refusal({"render", "room.gltf", "-o", "a.exr", "-D", "emission=-1"}, 1),
