@@ -79,7 +79,7 @@ def row(m):
                     percent(last["bias"], last["bias_se"], "+"), percent(*m["systematic"]) if len(runs) > 1 else "-", f"{m['build_s']:.1f} s"]
 
 
-HEAD = ("method", *(f"s to {100 * t:.0f} %" for t in TARGETS), "M samples/s", "variance x time [s]", "last picture", "bias", "systematic", "loading")
+HEAD = ("method", *(f"s to {100 * t:g} %" for t in TARGETS), "M samples/s", "variance x time [s]", "last picture", "bias", "systematic", "loading")
 
 
 def markdown(methods):
