@@ -5,8 +5,7 @@
   tools/picture_hashes.py MOTE --against HASHES           compare with an earlier file; ends with 1 on a difference
 
 A line of the file is "scene integrator hash"; where the program refuses the scene, the hash is "refused". The hash
-covers the pixels of every channel (oiiotool --hash, from openimageio-tools), not their names. The city is left out: it
-takes half a minute to load.
+covers the pixels of every channel (pixel_hash.py). The city is left out: it takes half a minute to load.
 """
 import argparse
 import os
@@ -16,6 +15,8 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+
+from pixel_hash import pixel_hash
 
 ROOT = Path(__file__).resolve().parent.parent
 LEFT_OUT = {"city"}
@@ -39,8 +40,7 @@ def picture_hash(mote, scene, integrator, threads):
             return "refused"
         if run.returncode != 0:
             return f"exit_{run.returncode}"
-        text = subprocess.run(["oiiotool", "--hash", str(picture)], check=True, capture_output=True, text=True).stdout
-        return re.search(r"SHA-1: ([0-9A-F]{40})", text).group(1)[:16]
+        return pixel_hash(picture)[:16]
 
 
 def main():

@@ -2,11 +2,10 @@
 import os
 import shlex
 import subprocess
+import sys
 
-
-def pixel_hash(path):
-    """Of the pixels of every channel."""
-    return subprocess.run(["oiiotool", "--hash", path], check=True, capture_output=True, text=True).stdout.split()[-1]
+sys.path.append(os.path.join(os.path.dirname(__file__), "..", "..", "tools"))
+from pixel_hash import pixel_hash  # noqa: E402
 
 
 def same_bits(mote, command, saved, folder):
