@@ -36,10 +36,12 @@ json error_json(const RenderReport& r) {
     return {{"unknown", r.scene.film().interval ? "too few passes" : "film.interval is not set"}};
 }
 
+/// Steps that follow one another; every other entry is a part of one of them.
 double total_seconds(const core::Statistics& statistics) {
     double total = 0.0;
-    for (const auto& [name, seconds] : statistics.seconds)
-        if (name != "checkpoints") total += seconds;  // part of "render"
+    for (const char* step : {"load", "build", "render", "finish", "denoise"})
+        if (const auto found = statistics.seconds.find(step); found != statistics.seconds.end())
+            total += found->second;
     return total;
 }
 

@@ -41,14 +41,19 @@ class LayerFilter {
     /// keeps them and has two passes a half, so that its error is known. Of a layer of one pass the variance
     /// is not known: OpenImageDenoise smooths it as far as it likes, our own filter leaves all layers as they
     /// are. Throws std::invalid_argument where a layer has no squares, and Cancelled.
+    ///
+    /// After little work OpenImageDenoise takes the sum of all layers of a kind at once, each of which keeps
+    /// its fraction of a pixel: more passes are then worth more than a run for each layer. Work is counted,
+    /// so this does not depend on the machine.
     void apply(core::Film& film, core::CancelToken cancelled = {});
 
-    /// apply() for a preview: OpenImageDenoise takes the sum of all layers of a kind at once, and quickly;
-    /// each layer keeps its fraction of a pixel. Returns true where it is the same: for our own filter.
+    /// apply() for a preview: OpenImageDenoise takes sums always, and quickly. Returns true where it is the
+    /// same: for our own filter.
     bool apply_for_preview(core::Film& film, core::CancelToken cancelled = {});
     /// Wall time of apply() without features, by that of the last call of either [s].
     double seconds_to_apply(const core::Film& film) const {
-        return seconds_per_layer_ * double(layers_.size()) * (has_halves(film) ? 2.0 : 1.0);
+        const std::size_t runs = joins_layers(film) ? kinds(film).size() : layers_.size();
+        return seconds_per_run_ * double(runs) * (has_halves(film) ? 2.0 : 1.0);
     }
 
     const std::vector<Choice>& layers() const { return layers_; }
@@ -67,10 +72,18 @@ class LayerFilter {
         std::function<std::unique_ptr<screenspace::ViewFilter>(const screenspace::FilterFeatures&)>;
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options, const FeatureSettings& features,
                 std::vector<Choice> layers, bool has_variance, MakeFilter make);
+    /// Layers that see the same features, and have passes.
+    struct Kind {
+        screenspace::LayerKind kind;
+        std::vector<std::size_t> layers;
+    };
+    std::vector<Kind> kinds(const core::Film& film) const;
+    bool joins_layers(const core::Film& film) const;
     void find_features(core::CancelToken cancelled);
     void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_mean(core::Film& film, const Choice& choice, core::CancelToken cancelled);
-    void apply_to_sum(core::Film& film, std::span<const std::size_t> layers, screenspace::LayerKind kind,
+    void apply_to_sums(core::Film& film, screenspace::FilterQuality quality, core::CancelToken cancelled);
+    void apply_to_sum(core::Film& film, const Kind& kind, screenspace::FilterQuality quality,
                       core::CancelToken cancelled);
 
     const core::Scene& scene_;
@@ -83,7 +96,7 @@ class LayerFilter {
     std::unique_ptr<screenspace::ViewFilter> filter_;  ///< from the features
     std::vector<std::vector<float>> variances_;
     double feature_seconds_ = 0.0, filter_seconds_ = 0.0;
-    double seconds_per_layer_ = 0.0;  ///< at full quality, by the last call
+    double seconds_per_run_ = 0.0;  ///< of the filter at full quality, by the last call
 };
 
 }  // namespace mote::integrators

@@ -164,6 +164,19 @@ TEST_CASE("A render writes EXR, PNG and statistics, and leaves nothing else", "[
     CHECK(mote::core::read_bitmap(folder.file("scene.png"), false).width == 20);
 }
 
+TEST_CASE("The total of seconds counts no step twice", "[command]") {
+    const SceneFolder folder;
+    const RunResult r = run_mote(folder, {"render", "scene.xml", "--integrator", "mote_layers", "--passes",
+                                          "2", "--quiet", "-o", "t.exr", "--stats", "t.json"});
+    REQUIRE(r.exit_code == 0);
+    const auto seconds = nlohmann::json::parse(read_file(folder.file("t.json")))["seconds"];
+    REQUIRE(seconds.contains("filter"));  // a part of "finish"
+    double steps = 0.0;
+    for (const char* step : {"load", "build", "render", "finish", "write"})
+        steps += seconds[step].get<double>();
+    CHECK(seconds["total"].get<double>() == Approx(steps));
+}
+
 TEST_CASE("Quiet renders say nothing", "[command]") {
     const SceneFolder folder;
     const RunResult r = run_mote(folder, {"render", "scene.xml", "--passes", "1", "--quiet", "-o", "q.exr"});

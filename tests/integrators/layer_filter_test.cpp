@@ -4,6 +4,10 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
 #include "core/render/pass_runner.h"
 #include "core/render/render_driver.h"
 #include "integrators/layer_filter/eye_march.h"
@@ -11,6 +15,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/environment.h"
 #include "tests/support/render_statistics.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace mote;
 using namespace mote::core;
@@ -187,6 +192,32 @@ TEST_CASE("A preview shows the filtered sum of the layers of a kind", "[layer_fi
     LayerFilter(*scene, options_of(*scene), FeatureSettings(), std::make_shared<const OidnLibrary>(), choices)
         .apply(film);
     CHECK(film.mean(layers[1]) == after);
+}
+
+TEST_CASE("After little work layers of a kind are denoised as one, and one by one after much",
+          "[layer_filter]") {
+    const auto scene = scene_from(box(grey, coloured_fog), 16);
+    Film film = rendered(*scene, 1, 1);
+    const std::vector<LayerFilter::Choice> choices = {
+        {layer_called(film, "direct"), LayerKind::surface},
+        {layer_called(film, "indirect"), LayerKind::surface},
+        {layer_called(film, "multiple_scattering"), LayerKind::volume}};
+    const TemporaryFolder folder;
+    const Environment stand_in("MOTE_OIDN", MOTE_BINARY_DIR "/stand_ins"),
+        log("MOTE_STAND_IN_LOG", folder.file("log"));
+    const auto runs = [&](const Film& f) {
+        Film copy = f;
+        std::ofstream(folder.file("log"));
+        LayerFilter(*scene, options_of(*scene), FeatureSettings(), std::make_shared<const OidnLibrary>(),
+                    choices)
+            .apply(copy);
+        std::ifstream file(folder.file("log"));
+        return std::count(std::istreambuf_iterator<char>(file), {}, '\n');
+    };
+    CHECK(runs(film) == 2);
+    film.add_pass(PassImage(film.width(), film.height(), film.layers().size()), 0,
+                  1e3 * double(film.pixels()));
+    CHECK(runs(film) == 3);
 }
 
 TEST_CASE("A preview by our own filter is its picture", "[layer_filter]") {

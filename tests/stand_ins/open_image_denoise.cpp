@@ -1,8 +1,9 @@
 // Functions of OpenImageDenoise with results that a test can predict. A feature becomes itself plus 1; a
 // colour with both features, denoised before (above 0, or above -1 + 1 for normals), twice itself; without
 // any three times; with anything else, or without the option for HDR, an error. MOTE_STAND_IN_FAILS:
-// the error of every run.
+// the error of every run. MOTE_STAND_IN_LOG: a file that gets a line for each colour that was denoised.
 #include <cstdlib>
+#include <fstream>
 #include <map>
 #include <string>
 
@@ -93,6 +94,8 @@ void oidnExecuteFilter(void* filter) {
     f.device->error = rule(f, input, factor, more);
     if (const char* fails = std::getenv("MOTE_STAND_IN_FAILS")) f.device->error = fails;
     if (!f.device->error.empty()) return;
+    if (const char* log = std::getenv("MOTE_STAND_IN_LOG"); log && input == "color")
+        std::ofstream(log, std::ios::app) << "quality " << f.quality << '\n';
     const Image &from = f.images.at(input), &to = f.images.at("output");
     for (std::size_t i = 0; i < to.numbers(); ++i) to.pixels[i] = factor * from.pixels[i] + more;
 }
