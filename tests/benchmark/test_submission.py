@@ -75,7 +75,8 @@ class DamageTest(unittest.TestCase):
         self.refused(self.picture("scene", "plane"), "picture 3: no scene 'plane' (did you mean 'plain'?)")
         self.refused(self.picture("budget_s", 2), "2 s is no budget of plain")
         self.refused(self.picture("seed", 77), "seed 77 is not prescribed")
-        self.refused(self.picture("seed", 1000), "two pictures of one seed", "no picture of seed 1002")
+        self.refused(lambda c: c["pictures"][2].update(seed=1000, file=c["pictures"][0]["file"]), "two pictures of one seed",
+                     "no picture of seed 1002")
         self.refused(lambda c: c["pictures"].pop(), "no picture of seed 1003, and is not in left_out")
         self.refused(self.picture("file", "../other.exr"), "leads out of the submission")
         self.refused(self.picture("file", "plain/1/1092.exr"), "1092.exr: is not there (did you mean '1002.exr'?)")

@@ -104,7 +104,7 @@ class StatisticTest(unittest.TestCase):
         self.assertLessEqual(int(np.sum(np.array(p) < 0.05)), 20 + 4 * (400 * 0.05 * 0.95) ** 0.5)
 
     def test_equal_errors(self):
-        self.assertEqual(verify.fresh_seeds([([1.0, 1.0], [1.0, 1.0])]), 1.0)
+        self.assertAlmostEqual(verify.fresh_seeds([([1.0, 1.0], [1.0, 1.0])]), 1.0)
 
     def test_times(self):
         random, accused = np.random.default_rng(6), 0

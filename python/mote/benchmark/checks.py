@@ -1,11 +1,12 @@
 """Checks of a submission against what a cheater would do, from the pictures alone. Each has a level that follows from its
 statistic; together they accuse an honest submission once in a hundred.
 
-A picture that was rendered is independent of the references. One that was made of a reference contains its noise:
-  dependence    sum of <x - (a + b) / 2, a - b> over pixels. Exchanging a and b in a pixel changes its sign, and both are equally
-                probable where x is independent. Finds what was made of one of the two.
+A picture x that was rendered is independent of the noise of references a, b. One that was made of them contains it. With r(m) what is
+left of x after its least-squares fit by the 5 x 5 pixels of a picture m around each, smoothed over 3 x 3 pixels:
+  dependence    sum of <r((a + b) / 2), a - b> over pixels. Exchanging a and b in a pixel changes the sign of its term alone, and
+                both are equally probable where x is independent. Finds what was made of one of the two.
   closeness     sum of <x - a, x - b>, whose mean is a square, so not below 0. Finds the mean of both.
-  hidden pair   sum of <x - d, (a + b) / 2 - c> with two unpublished references: mean 0, and above it for what was
+  hidden pair   sum of <r(d), (a + b) / 2 - c> with two unpublished references: mean 0, and above it for what was
                 made of a and b in whatever way, such as their mean, blurred.
 A picture that is declared raw, of independent pixels, has noise without correlation between neighbours:
   whiteness     sum of <d, d'> over disjoint pairs of neighbours, d the difference of two seeds. Finds filters.
@@ -35,9 +36,9 @@ class Finding(NamedTuple):
     text: str
 
 
-def scale_of(references: References) -> np.ndarray:
+def scale_of(picture: np.ndarray) -> np.ndarray:
     """1 / radiance (height, width, 1), by the mean of 3 x 3 pixels, so that bright ones do not decide alone."""
-    light = neighbours(np.abs(references.mean().astype(np.float64)).mean(axis=2)).mean(axis=0)
+    light = neighbours(np.abs(picture.astype(np.float64)).mean(axis=2)).mean(axis=0)
     return 1.0 / np.maximum(light + 0.1 * light.mean(), 1e-30)[..., None]
 
 
@@ -56,28 +57,39 @@ def _normal(z: float) -> float:
     return 0.5 * math.erfc(z / math.sqrt(2.0))
 
 
+def unexplained(picture: np.ndarray, by: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """What is left of a picture after its fit by the 5 x 5 pixels of another, times u, smoothed: without it the bias of a blur
+    would hide the noise that a blur leaves."""
+    basis = np.concatenate([neighbours(by, 2) * u, np.ones_like(by)[None] * u]).reshape(26, -1)
+    target = (picture * u).ravel()
+    # Normal equations: 26 unknowns, and a basis of radiances between 0 and about 1.
+    moments = basis @ basis.T
+    weights = np.linalg.lstsq(moments, basis @ target, rcond=1e-10)[0]
+    return neighbours((target - weights @ basis).reshape(picture.shape)).mean(axis=0)
+
+
 def dependence(picture: np.ndarray, references: References) -> float:
-    a, b, u = references.first.astype(np.float64), references.second.astype(np.float64), scale_of(references)
-    terms = ((picture - 0.5 * (a + b)) * u * (a - b) * u).sum(axis=2)
+    a, b, u = references.first.astype(np.float64), references.second.astype(np.float64), scale_of(references.mean())
+    terms = (unexplained(picture, 0.5 * (a + b), u) * (a - b) * u).sum(axis=2)
     return min(1.0, 2.0 * _by_signs(abs(_z(terms))))
 
 
 def closeness(picture: np.ndarray, references: References) -> float:
-    a, b, u = references.first.astype(np.float64), references.second.astype(np.float64), scale_of(references)
+    a, b, u = references.first.astype(np.float64), references.second.astype(np.float64), scale_of(references.mean())
     return _normal(-_z(((picture - a) * u * (picture - b) * u).sum(axis=2)))
 
 
 def hidden_pair(picture: np.ndarray, references: References) -> Optional[float]:
     if references.hidden is None:
         return None
-    c, d = (h.astype(np.float64) for h in references.hidden)
-    m, u = references.mean().astype(np.float64), scale_of(references)
-    both = [_normal(_z(((picture - y) * u * (m - x) * u).sum(axis=2))) for x, y in ((c, d), (d, c))]
-    return min(1.0, 2.0 * min(both))
+    m, hidden = references.mean().astype(np.float64), [h.astype(np.float64) for h in references.hidden]
+    # The scale is that of d alone, so that it has no noise of m or c.
+    tests = [(c, d, scale_of(d)) for c, d in (hidden, hidden[::-1])]
+    return min(1.0, 2.0 * min(_normal(_z((unexplained(picture, d, u) * (m - c) * u).sum(axis=2))) for c, d, u in tests))
 
 
 def whiteness(first: np.ndarray, second: np.ndarray, references: References) -> float:
-    d = (first.astype(np.float64) - second) * scale_of(references)
+    d = (first.astype(np.float64) - second) * scale_of(references.mean())
     across = (d[:, 0:-1:2] * d[:, 1::2]).sum(axis=2)
     down = (d[0:-1:2] * d[1::2]).sum(axis=2)
     return min(1.0, 2.0 * min(_by_signs(_z(across)), _by_signs(_z(down))))

@@ -20,11 +20,11 @@ TURNED = 0.85   # cosine between normals, some 30 degrees
 DEEPER = 0.1    # relative to the depth
 
 
-def neighbours(values: np.ndarray) -> np.ndarray:
-    """(9, height, width, ...): the 3 x 3 pixels around each, those of the border repeated."""
-    pad = np.pad(values, [(1, 1), (1, 1)] + [(0, 0)] * (values.ndim - 2), mode="edge")
-    height, width = values.shape[:2]
-    return np.stack([pad[y:y + height, x:x + width] for y in range(3) for x in range(3)])
+def neighbours(values: np.ndarray, reach: int = 1) -> np.ndarray:
+    """(9, height, width, ...): the 3 x 3 pixels around each (reach 2: 5 x 5), those of the border repeated."""
+    pad = np.pad(values, [(reach, reach), (reach, reach)] + [(0, 0)] * (values.ndim - 2), mode="edge")
+    height, width, size = *values.shape[:2], 2 * reach + 1
+    return np.stack([pad[y:y + height, x:x + width] for y in range(size) for x in range(size)])
 
 
 def _layer(pictures, name: str) -> np.ndarray:

@@ -58,7 +58,7 @@ def repetition(submitted: np.ndarray, again: np.ndarray, other: np.ndarray, refe
     picture was repeated."""
     if np.array_equal(submitted, again):
         return 0.0
-    u = scale_of(references)
+    u = scale_of(references.mean())
     same, different = ((np.abs((submitted.astype(np.float64) - x) * u)).sum(axis=2) for x in (again, other))
     nearer, counted = int((same < different).sum()), int((same != different).sum())
     if not counted:
