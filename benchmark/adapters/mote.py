@@ -43,7 +43,7 @@ class Renderer(Adapter):
         denoise = job.settings.get("denoise", "")
         words = [command(), "render", str(job.scene.file), "-o", str(path), "--seed", str(seed), "--passes", str(job.passes), "--quiet",
                  "--threads", str(job.threads), "--stats", str(stats), "--integrator", job.settings["integrator"],
-                 *self._words(job.scene, job.settings)] + (["--denoise", denoise, "--auxiliary"] if denoise else [])
+                 *self._words(job.scene, job.settings)] + ([f"--denoise={denoise}", "--auxiliary"] if denoise else [])
         cpu, began = processor_seconds(), time.time()
         done = subprocess.run(words, capture_output=True, text=True, check=False, env={**os.environ})
         if done.returncode:

@@ -11,6 +11,7 @@ import unittest
 from mote.benchmark.__main__ import main
 from mote.benchmark.adapter import load_adapter
 from mote.benchmark.problem import BenchmarkError
+from mote.benchmark.running import next_passes
 from mote.benchmark.suite import load_suite
 from synthetic import SOURCE, Path, temporary
 
@@ -59,6 +60,15 @@ class RunTest(unittest.TestCase):
             self.assertEqual(before, {p: p.stat().st_mtime_ns for p in subs[0].rglob("*.exr")})
             # What is here is repeated bit by bit; times depend on the load of the machine, which is not tested.
             _, _ = main_of_verify(subs[0], common)
+
+    def test_passes(self):
+        """Late pictures get fewer passes, early ones more, others are kept; one pass is never less."""
+        self.assertEqual(next_passes(100, 1.2, 1.0), 75)
+        self.assertEqual(next_passes(2, 1.01, 1.0), 1)
+        self.assertEqual(next_passes(1, 3.0, 1.0), 1)
+        self.assertEqual(next_passes(100, 0.44, 1.0), 200)
+        self.assertEqual(next_passes(100, 0.7, 1.0), 100)
+        self.assertEqual(next_passes(1, 0.55, 1.0), 1)
 
     def test_suite(self):
         """The suite of the tree: scenes that are part of it exist, every program has an adapter, words are complete."""

@@ -5,10 +5,10 @@ import sys
 import unittest
 
 from mote.benchmark.ranks import rank, ranks_of
-from mote.benchmark.scoring import Interval, Score, measure, scores_of, time_to
+from mote.benchmark.scoring import Interval, Score, measure, scores_of, shared_by_seeds, time_to
 from mote.benchmark.submission import read_submission
-from synthetic import (BUDGETS, HEIGHT, WIDTH, Path, load, noisy, np, references, suite_file, temporary, write_references,
-                       write_submission)
+from synthetic import (BUDGETS, HEIGHT, WIDTH, Path, load, noisy, np, references, suite_file, temporary, textured,
+                       write_references, write_submission)
 
 
 def score(seconds, error):
@@ -75,6 +75,14 @@ class ScoreTest(unittest.TestCase):
                 self.assertLess(rest.error.low, 0.01)
                 self.assertLess(rest.error.high, 0.25 * shadows.error.value)
                 self.assertAlmostEqual(whole.error.value, shadows.error.value / math.sqrt(2), delta=0.05 * shadows.error.value)
+
+    def test_models(self):
+        """A program whose pictures are all 8 % too bright is found; of 100 that are not, no more than 1 and four deviations are."""
+        random, truth = np.random.default_rng(8), textured(32, 48)
+        one = lambda factor: measure([noisy(factor * truth, 0.3, random) for _ in range(4)], references(truth, 0.1, random))  # noqa: E731
+        for factor, most in ((1.08, None), (1.0, 1 + 4 * math.sqrt(0.99))):
+            found = sum(shared_by_seeds(score(1.0, 0.1)._replace(systematic=one(factor)[2]), 1) for _ in range(100))
+            self.assertTrue(found == 100 if most is None else found <= most, (factor, found))
 
     def test_late(self):
         with temporary() as folder:

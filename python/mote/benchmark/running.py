@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, List
 
 from .. import cluster
-from .adapter import Adapter, Job, Pilot, Run, load_adapter
+from .adapter import RESERVE, Adapter, Job, Pilot, Run, load_adapter
 from .problem import BenchmarkError, hint, key_problems, read_json
 from .references import command
 from .submission import MANIFEST, time_text, write_manifest
@@ -18,7 +18,8 @@ from .suite import FORMAT, Scene, Suite
 
 _METHOD = {"name": (str,), "program": (str,), "kind": (str,), "noise": (str,), "unbiased": (bool,)}
 YARDSTICK = ["--integrator", "path", "-D", "film.width=128", "-D", "film.height=128", "--passes", "32", "--seed", "1"]
-AGAIN = 3  # times that pictures which were late are rendered with fewer passes
+AGAIN = 4      # attempts to fit a budget
+EARLY = 0.6    # of a budget: pictures that take less are rendered with more passes
 
 
 def read_methods(file: Path, names: List[str]) -> List[Dict[str, Any]]:
@@ -60,15 +61,22 @@ def yardstick(suite: Suite, threads: int, times: int = 5) -> List[float]:
     return seconds
 
 
+def next_passes(passes: int, longest: float, budget: float) -> int:
+    """Passes of the next attempt; the same where this one fits: in time, and not much too early."""
+    if longest > budget:
+        return max(1, min(passes - 1, int(passes * 0.9 * budget / longest)))
+    return max(passes, int(passes * RESERVE * budget / longest)) if longest < EARLY * budget else passes
+
+
 def _pictures(adapter: Adapter, job: Job, passes: int, budget: float) -> List[Run]:
-    """Pictures in time, with fewer passes where the first were late; the last ones, late or not."""
+    """Pictures that fit the budget; after AGAIN attempts the last ones, late or not."""
     runs: List[Run] = []
     for _ in range(AGAIN):
         runs = adapter.render(job._replace(passes=passes))
-        longest = max(r.wall_s for r in runs)
-        if longest <= budget or passes == 1:
+        wanted = next_passes(passes, max(r.wall_s for r in runs), budget)
+        if wanted == passes:
             break
-        passes = max(1, min(passes - 1, int(passes * 0.92 * budget / longest)))
+        passes = wanted
     return runs
 
 

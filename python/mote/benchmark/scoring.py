@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+from statistics import NormalDist
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
@@ -109,16 +110,25 @@ def time_to(target: float, scores: Sequence[Score], unbiased: bool) -> Tuple[flo
     return (last * (error / target) ** 2, "extrapolated") if unbiased else (math.nan, "not reached")
 
 
+def shared_by_seeds(score: Score, tests: int) -> bool:
+    """Does the systematic error exceed chance, at a level of 1 % for so many tests together (Sidak 1967)? Of the squares, whose
+    noise has mean 0: series_error() states the root, and how far the root of the upper end is from it."""
+    value, error = score.systematic
+    spread = (value + error) ** 2 - value ** 2
+    return value ** 2 > NormalDist().inv_cdf(0.99 ** (1.0 / tests)) * spread
+
+
 def model_difference(submission: Submission, scores: Sequence[Score], scene: str) -> float:
-    """Systematic error of a raw, unbiased method of another program, where it exceeds three standard errors: its scene or its
-    models differ, since time reduces noise and not this. 0 where it does not show."""
+    """Systematic error of a raw, unbiased method where it exceeds chance: scene or models of its program differ, or it is biased,
+    since time reduces noise and not this. 0 where it does not show."""
     if submission.kind != "raw" or not submission.unbiased:
         return 0.0
-    longest = [s for s in scores if s.scene == scene and s.region == "all" and not s.failed]
-    if not longest:
+    whole = [s for s in scores if s.region == "all" and not s.failed]
+    own = [s for s in whole if s.scene == scene]
+    if not own:
         return 0.0
-    value, error = max(longest, key=lambda s: s.budget).systematic
-    return value if value > 3 * error else 0.0
+    longest = max(own, key=lambda s: s.budget)
+    return longest.systematic[0] if shared_by_seeds(longest, len({s.scene for s in whole})) else 0.0
 
 
 def all_scores(submission: Submission, suite: Suite, references: Dict[str, References]) -> List[Score]:
