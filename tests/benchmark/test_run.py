@@ -8,6 +8,7 @@ import shutil
 import sys
 import unittest
 
+from mote import Picture
 from mote.benchmark.__main__ import main
 from mote.benchmark.adapter import load_adapter
 from mote.benchmark.problem import BenchmarkError
@@ -36,7 +37,7 @@ class RunTest(unittest.TestCase):
             suite = json.loads((Path(SOURCE) / "benchmark" / "suite.json").read_text())
             box = next(s for s in suite["scenes"] if s["name"] == "cornell_box")
             box.update(file=str(Path(SOURCE) / "scenes" / "cornell_box.xml"), width=48, height=48, budgets=[0.2, 0.6])
-            box["reference"]["passes"] = 256
+            box["reference"]["passes"] = 128
             missing = dict(box, name="missing", file="missing.xml", made_by="nothing makes it")
             suite.update(scenes=[box, missing], seeds=3)
             (folder / "suite.json").write_text(json.dumps(suite))
@@ -60,6 +61,29 @@ class RunTest(unittest.TestCase):
             self.assertEqual(before, {p: p.stat().st_mtime_ns for p in subs[0].rglob("*.exr")})
             # What is here is repeated bit by bit; times depend on the load of the machine, which is not tested.
             _, _ = main_of_verify(subs[0], common)
+
+    def test_cluster(self):
+        """References by the workers of a Dask cluster have the bits of this machine's."""
+        try:
+            from distributed import LocalCluster
+        except ImportError:
+            self.skipTest("LEFT OUT: no package 'distributed' in this Python")
+        os.environ["MOTE_COMMAND"] = os.environ["MOTE"]
+        with temporary() as name, LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None, silence_logs=50) as local:
+            folder = Path(name)
+            suite = json.loads((Path(SOURCE) / "benchmark" / "suite.json").read_text())
+            box = next(s for s in suite["scenes"] if s["name"] == "cornell_box")
+            box.update(file=str(Path(SOURCE) / "scenes" / "cornell_box.xml"), width=32, height=32)
+            box["reference"]["passes"] = 32
+            suite.update(scenes=[box])
+            (folder / "suite.json").write_text(json.dumps(suite))
+            self.command("references", "--suite", folder, "--references", folder / "one", "-t", 1)
+            self.command("references", "--suite", folder, "--references", folder / "many", "--scheduler", local.scheduler_address)
+            for letter in "ab":
+                one, many = (Picture.load(folder / of / f"cornell_box_{letter}.exr") for of in ("one", "many"))
+                self.assertTrue((one["beauty"] == many["beauty"]).all())
+            log = json.loads((folder / "many" / "references.json").read_text())["scenes"]["cornell_box"]
+            self.assertEqual(len(log["a"]["machines"]), 1)
 
     def test_passes(self):
         """Late pictures get fewer passes, early ones more, others are kept; one pass is never less."""
