@@ -156,10 +156,10 @@ def main(arguments=None) -> int:
         return options.run(suite, options)
     except (BenchmarkError, cluster.ClusterError) as problem:
         for line in str(problem).splitlines():
-            say(line.removeprefix("mote: ") if hasattr(line, "removeprefix") else line)
+            say(line.removeprefix("mote: "))
         return 1
     except OSError as problem:
-        say(f"{problem.filename}: {problem.strerror}")
+        say(f"{problem.filename}: {problem.strerror}" if problem.filename else str(problem))
         return 1
     except KeyboardInterrupt:
         return 130

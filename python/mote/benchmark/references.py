@@ -52,6 +52,18 @@ def file_of(folder: Path, scene: Scene, letter: str) -> Path:
     return Path(folder) / f"{scene.name}_{letter}.exr"
 
 
+def _client(scheduler: str) -> Any:
+    """Raises BenchmarkError where the package or the scheduler is missing."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise BenchmarkError("--scheduler: the Python package 'distributed' is missing (pip install distributed)") from None
+    try:
+        return Client(scheduler, timeout=20, set_as_default=False)
+    except (OSError, ValueError) as problem:
+        raise BenchmarkError(f"--scheduler: there is no scheduler at '{scheduler}': {problem}") from None
+
+
 def make_one(scene: Scene, path: Path, letter: str, scheduler: str, threads: int) -> Dict[str, Any]:
     """Renders one by this machine or by the workers of a Dask cluster; returns what it cost."""
     seed, began, machines = seed_of(scene, letter), time.time(), [platform.processor() or platform.machine()]
@@ -60,8 +72,7 @@ def make_one(scene: Scene, path: Path, letter: str, scheduler: str, threads: int
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
         if scheduler:
-            from distributed import Client
-            with Client(scheduler, timeout=20, set_as_default=False) as client:
+            with _client(scheduler) as client:
                 cluster.render(scene.file, path, scheduler, passes=scene.passes, threads=threads or 1, options=options, defines=defines,
                                mote=command(), resume=True, quiet=True, client=client)
                 machines = sorted({w["host"] for w in client.scheduler_info(n_workers=-1)["workers"].values()})

@@ -147,9 +147,8 @@ def run_method(suite: Suite, method: Dict[str, Any], scenes: List[Scene], output
 def run(suite: Suite, methods: List[Dict[str, Any]], scenes: List[Scene], output: Path, threads: int, fresh: bool,
         say: Callable[[str], None]) -> List[Path]:
     """The folders of the submissions."""
-    threads = threads or os.cpu_count() or 1
+    threads, start = threads or os.cpu_count() or 1, time.time()
     stick = yardstick(suite, threads)
-    start = time.time()
     folders = [output / folder_name(m["name"]) for m in methods if run_method(suite, m, scenes, output, threads, fresh, say, stick)]
     say(f"{len(folders)} of {len(methods)} methods in {time.time() - start:.0f} s")
     return folders
