@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import secrets
 import sys
 from pathlib import Path
 from typing import Dict, List
@@ -96,11 +97,12 @@ def verify_command(suite: Suite, options: argparse.Namespace) -> int:
     if adapter.missing():
         raise BenchmarkError(f"{options.folder}: cannot be verified here: {adapter.missing()}")
     references = load_references(suite, options.references, [submission])
-    chosen = [s for s in suite.chosen(options.scenes) if submission.at(s.name, s.budgets[0])]
-    if not chosen:
-        raise BenchmarkError(f"{options.folder}: has no picture of these scenes at the first budget")
+    there = {s.name: [b for b in s.budgets if submission.at(s.name, b)] for s in suite.chosen(options.scenes or list(references))}
+    if not any(there.values()):
+        raise BenchmarkError(f"{options.folder}: has no picture of these scenes")
     try:
-        samples = [render_sample(submission, scene, scene.budgets[0], adapter) for scene in chosen]
+        # The budget is sampled, so that none is safe from being rendered again.
+        samples = [render_sample(submission, suite.scene(name), secrets.choice(budgets), adapter) for name, budgets in there.items() if budgets]
     except RuntimeError as problem:
         raise BenchmarkError(f"{options.folder}: {problem}") from None
     found = judge(submission, samples, references, yardstick(suite, submission.machine["threads"]))
