@@ -120,8 +120,9 @@ def shared_by_seeds(score: Score, tests: int) -> bool:
 
 def model_difference(submission: Submission, scores: Sequence[Score], scene: str) -> float:
     """Systematic error of a raw, unbiased method where it exceeds chance: scene or models of its program differ, or it is biased,
-    since time reduces noise and not this. 0 where it does not show."""
-    if submission.kind != "raw" or not submission.unbiased:
+    since time reduces noise and not this. 0 where it does not show, and where the noise of neighbouring pixels is not independent,
+    as the standard error presumes."""
+    if submission.kind != "raw" or submission.noise != "independent" or not submission.unbiased:
         return 0.0
     whole = [s for s in scores if s.region == "all" and not s.failed]
     own = [s for s in whole if s.scene == scene]
