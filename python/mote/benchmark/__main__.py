@@ -37,7 +37,8 @@ def scenes_command(suite: Suite, options: argparse.Namespace) -> int:
     for s in suite.chosen(options.scenes):
         budgets = " and ".join(f"{b:g}" for b in s.budgets)
         print(f"{s.name}: {s.tests}\n    {s.width} x {s.height} pixels, {budgets} s, seeds {suite.seeds_of(s)[0]} to "
-              f"{suite.seeds_of(s)[-1]}; licence: {s.licence}" + f"; {s.origin}" * bool(s.origin) + (f"\n    {s.missing()}" if s.missing() else ""))
+              f"{suite.seeds_of(s)[-1]}; licence: {s.licence}" + f"; {s.origin}" * bool(s.origin)
+              + f"\n    {s.missing()}" * bool(s.missing()))
     return 0
 
 
@@ -80,8 +81,9 @@ def score_command(suite: Suite, options: argparse.Namespace) -> int:
     known = json.loads(log.read_text(encoding="utf-8"))["scenes"] if log.is_file() else {}
     noise = {scene: known.get(scene, {}).get("noise") or made.noise_by_region(r) for scene, r in references.items()}
     judged = [judged_one(s, suite, references) for s in submissions]
-    facts = {"Suite": suite.label(), "Command": "python -m mote.benchmark score", "References": f"{len(references)} scenes, hidden pairs of "
-             f"{sum(r.hidden is not None for r in references.values())}"}
+    hidden = sum(r.hidden is not None for r in references.values())
+    facts = {"Suite": suite.label(), "Command": "python -m mote.benchmark score",
+             "References": f"{len(references)} scenes, {hidden} of them with a hidden pair"}
     options.output.mkdir(parents=True, exist_ok=True)
     write_files(options.output, judged, suite, facts)
     write_page(options.output / "benchmark.html", judged, suite, references, noise, facts)
@@ -102,7 +104,8 @@ def verify_command(suite: Suite, options: argparse.Namespace) -> int:
         raise BenchmarkError(f"{options.folder}: has no picture of these scenes")
     try:
         # The budget is sampled, so that none is safe from being rendered again.
-        samples = [render_sample(submission, suite.scene(name), secrets.choice(budgets), adapter) for name, budgets in there.items() if budgets]
+        samples = [render_sample(submission, suite.scene(name), secrets.choice(budgets), adapter)
+                   for name, budgets in there.items() if budgets]
     except RuntimeError as problem:
         raise BenchmarkError(f"{options.folder}: {problem}") from None
     found = judge(submission, samples, references, yardstick(suite, submission.machine["threads"]))

@@ -99,8 +99,8 @@ def models(judged: Sequence[Judged], scene: str) -> List[str]:
     for j in judged:
         difference = model_difference(j.submission, j.scores, scene)
         if difference:
-            lines.append(f"{j.submission.program}: all seeds of {j.submission.method} share {100 * difference:.2f} %, which time does not reduce: "
-                         "its scene or its models differ, or the method is biased; contained in the errors of all methods of that program")
+            lines.append(f"{j.submission.program}: all seeds of {j.submission.method} share {100 * difference:.2f} %, which time does not "
+                         "reduce: its scene or its models differ, or the method is biased; contained in the errors of all methods of that program")
     return lines
 
 

@@ -84,6 +84,7 @@ def _scene(where: str, given: Any, number: int, folder: Path, quick: Optional[Di
     if lines:
         raise BenchmarkError(*lines)
     reference, shrink = given["reference"], quick["shrink"] if quick else 1
+    generated = str(folder.resolve() / "generated")
     data = os.environ.get("MOTE_TEST_DATA", str(folder.parent.parent / "shared" / "data"))
     return Scene(name=given["name"], title=given["title"], tests=given["tests"], licence=given["licence"],
                  origin=given.get("origin", ""), file=(folder / given["file"].replace("$DATA", data)).resolve(),
@@ -91,7 +92,8 @@ def _scene(where: str, given: Any, number: int, folder: Path, quick: Optional[Di
                  budgets=tuple(float(b) for b in (quick["budgets"] if quick else given["budgets"])),
                  integrator=reference["integrator"], settings=reference.get("settings", {}),
                  passes=max(8, reference["passes"] // (quick["fewer_passes"] if quick else 1)),
-                 defines={k: str(v).replace("$GENERATED", str(folder.resolve() / "generated")) for k, v in given.get("defines", {}).items()}, made_by=given.get("made_by", ""),
+                 defines={k: str(v).replace("$GENERATED", generated) for k, v in given.get("defines", {}).items()},
+                 made_by=given.get("made_by", ""),
                  lenient=given.get("lenient", False), number=number)
 
 
