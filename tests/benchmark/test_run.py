@@ -18,7 +18,18 @@ from synthetic import SOURCE, Path, temporary
 
 METHODS = [{"name": "paths", "program": "mote", "kind": "raw", "noise": "independent", "unbiased": True, "settings": {"integrator": "path"}},
            {"name": "lights", "program": "mote", "kind": "raw", "noise": "shared", "unbiased": False, "settings": {"integrator": "mote_vpl"}},
-           {"name": "absent", "program": "pbrt", "kind": "raw", "noise": "independent", "unbiased": True}]
+           {"name": "absent", "program": "pbrt", "kind": "raw", "noise": "independent", "unbiased": True},
+           {"name": "broken", "program": "broken", "kind": "raw", "noise": "independent", "unbiased": True}]
+BROKEN = """from mote.benchmark.adapter import Adapter
+
+
+class Renderer(Adapter):
+    def version(self):
+        return "0"
+
+    def render(self, job):
+        raise RuntimeError("it found no light")
+"""
 
 
 class RunTest(unittest.TestCase):
@@ -34,6 +45,7 @@ class RunTest(unittest.TestCase):
         with temporary() as name:
             folder = Path(name)
             shutil.copytree(Path(SOURCE) / "benchmark" / "adapters", folder / "adapters")
+            (folder / "adapters" / "broken.py").write_text(BROKEN)
             suite = json.loads((Path(SOURCE) / "benchmark" / "suite.json").read_text())
             box = next(s for s in suite["scenes"] if s["name"] == "cornell_box")
             box.update(file=str(Path(SOURCE) / "scenes" / "cornell_box.xml"), width=48, height=48, budgets=[0.2, 0.6])
@@ -52,9 +64,11 @@ class RunTest(unittest.TestCase):
             out, said = self.command("run", *common, "-t", 2, "-o", folder / "subs")
             self.assertIn("absent: left out: pbrt-v4 is not installed", said)
             self.assertIn("missing.xml is not there: nothing makes it", said)
-            subs = [folder / "subs" / name for name in ("paths", "lights")]
+            self.assertIn("broken: cornell_box: failed: it found no light", said)
+            subs = [folder / "subs" / name for name in ("paths", "lights", "broken")]
             out, _ = self.command("score", *subs, *common, "-o", folder / "scores")
             self.assertIn("raw: ranks over 1 scenes", out)
+            self.assertIn("cornell_box: failed | cornell_box |", out)
             before = {p: p.stat().st_mtime_ns for p in subs[0].rglob("*.exr")}
             self.assertEqual(len(before), 6)
             self.command("run", *common, "-t", 2, "-o", folder / "subs", "paths")

@@ -4,6 +4,7 @@ from __future__ import annotations
 import json
 import os
 import platform
+import subprocess
 import tempfile
 import time
 from pathlib import Path
@@ -133,7 +134,7 @@ def run_method(suite: Suite, method: Dict[str, Any], scenes: List[Scene], output
             continue
         try:
             run_scene(adapter, scene, suite, method, folder, threads, content, say)
-        except RuntimeError as problem:
+        except (RuntimeError, OSError, ValueError, subprocess.SubprocessError) as problem:  # the others are to run all night
             lines = str(problem).strip().splitlines() or ["failed"]
             content["pictures"] = [p for p in content["pictures"] if p["scene"] != scene.name]
             content["left_out"].append({"scene": scene.name, "reason": lines[-1]})
