@@ -57,7 +57,7 @@ TWINS = {
 
 # Errors of pictures computed outside core/metrics: the squared difference from one reference or two, and the weights of
 # squares.
-ERROR_FOLDERS = ["experiments", "tests", "tools", "scenes", "docs", "python"]
+ERROR_FOLDERS = ["experiments", "benchmark", "tests", "tools", "scenes", "docs", "python"]
 NAME = r"[A-Za-z_][\w.\[\]\"']*"
 ERROR = re.compile("|".join([
     rf"\({NAME} - {NAME}(?:\(axis=0\))?\)\s*\*\*\s*2",       # (x - r)^2, (x - mean r)^2

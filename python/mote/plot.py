@@ -32,6 +32,11 @@ _STYLE = {"methods", "order", "width", "height", "font", "title", "seconds", "er
 _METHOD = {"label", "color", "marker", "hide"}
 
 
+def student(freedom: int) -> float:
+    """97.5 % point of Student's t: half of an interval of 95 %, in standard errors."""
+    return _STUDENT[freedom - 1] if freedom <= len(_STUDENT) else 1.96 + 2.8 / (freedom + 1)
+
+
 class Point(NamedTuple):
     """Several seeds after the same number of passes, or all at their end: means, and the ends of the error bar."""
     seconds: float
@@ -49,7 +54,7 @@ def _bar(errors: List[float], noise: float, bars: str) -> tuple:
         return mean, mean
     spread = 0.0
     if n > 1:
-        spread = (_STUDENT[n - 2] if n - 2 < len(_STUDENT) else 1.96 + 2.8 / n) * statistics.stdev(errors) / math.sqrt(n)
+        spread = student(n - 1) * statistics.stdev(errors) / math.sqrt(n)
     half = math.hypot(spread, 1.96 * noise)
     return mean - half, mean + half
 

@@ -12,7 +12,7 @@ import unicodedata
 from pathlib import Path
 
 FOLDERS = ["core", "media", "lights", "compensation", "screenspace", "gathering", "integrators", "session",
-           "trade", "viewer", "apps", "python", "plugins", "experiments", "tests", "tools", "scenes"]
+           "trade", "viewer", "apps", "python", "plugins", "experiments", "benchmark", "tests", "tools", "scenes"]
 NAME = r"(?:[a-z]')?[^\W\d_][\w'-]+"
 CITATION = re.compile(rf"((?:{NAME}(?:, | & | and ))*{NAME})(?: et al\.)?,? \(?((?:18|19|20)\d\d)\b")
 NOT_AUTHORS = {"CIE", "IEC", "ISO", "IEEE"}

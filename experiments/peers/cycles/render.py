@@ -61,9 +61,9 @@ def picture(job, index, samples, seed):
     scene.cycles.samples, scene.cycles.seed = samples, seed
     path = Path(job["output"]) / f"{index}.exr"
     scene.render.filepath = str(path)
-    wall, cpu = time.monotonic(), processor_seconds()
+    started, wall, cpu = time.time(), time.monotonic(), processor_seconds()
     bpy.ops.render.render(write_still=True)
-    return {"passes": samples, "seed": seed, "wall_s": time.monotonic() - wall, "cpu_s": processor_seconds() - cpu,
+    return {"passes": samples, "seed": seed, "started": started, "wall_s": time.monotonic() - wall, "cpu_s": processor_seconds() - cpu,
             "file": path.name}
 
 

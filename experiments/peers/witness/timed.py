@@ -7,6 +7,7 @@ takes some milliseconds to set up, and much memory where it is large). With `den
 import importlib.util
 import json
 import sys
+import time
 from pathlib import Path
 
 import drjit
@@ -55,11 +56,11 @@ def write_timed(folder):
     samples = next_passes([], job["budget"])
     while samples:
         index = len(log["runs"])
-        seed, clock = renderers.seed_list(1, offset=job["seed"] + index)[0], Clock()
+        seed, clock, started = renderers.seed_list(1, offset=job["seed"] + index)[0], Clock(), time.time()
         mean = finish(picture(scene, integrator, samples, at_once, seed))
         wall, cpu = clock.read()
         np.save(folder / f"{index}.npy", mean)
-        log["runs"].append({"passes": samples, "seed": seed, "wall_s": wall, "cpu_s": cpu, "file": f"{index}.npy"})
+        log["runs"].append({"passes": samples, "seed": seed, "started": started, "wall_s": wall, "cpu_s": cpu, "file": f"{index}.npy"})
         samples = next_passes(log["runs"], job["budget"])
     (folder / "log.json").write_text(json.dumps(log, indent=1))
     return 0
