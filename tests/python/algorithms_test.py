@@ -97,5 +97,45 @@ class VisibilityTest(unittest.TestCase):
             mote.count_visible(self.items, [(2, 0, 0, 3, 2)], count=2)
 
 
+class HostLightTest(unittest.TestCase):
+    """A closed unit cube: walls receive power / (area (1 - reflectance)), of which power / area is direct."""
+
+    @staticmethod
+    def first_hit(origin, direction, length):
+        ends = [((d > 0) - o) / d if d else math.inf for o, d in zip(origin, direction)]
+        distance = min(ends)
+        axis = ends.index(distance)
+        return (distance, tuple(float(k == axis) for k in range(3)), 0) if 0 < distance < length else None
+
+    def light(self, **settings):
+        return mote.HostLight(settings.pop("first_hit", self.first_hit), reflectance=[(0.5, 0.5, 0.5)], lamps=[(0.4, 0.5, 0.6)],
+                              intensities=[(2, 2, 2)], bounds=((0, 0, 0), (1, 1, 1)), **settings)
+
+    def test_energy(self):
+        rng, means = np.random.default_rng(7), []
+        for seed in range(8):
+            light = self.light(paths=128, seed=seed, find_occluded=lambda o, d, lengths: np.zeros(len(lengths), bool))
+            axes, upper = np.arange(96) % 3, np.arange(96) // 3 % 2
+            position, normal = rng.random((96, 3)), np.zeros((96, 3))
+            position[np.arange(96), axes], normal[np.arange(96), axes] = upper, 1 - 2 * upper
+            means.append(light.reflected(position, normal).mean() * math.pi / 0.5)
+            self.assertGreater(len(light), 128)
+        error = np.std(means, ddof=1) / len(means) ** 0.5
+        expected = 4 * math.pi * 2 / 6
+        self.assertLess(abs(np.mean(means) - expected), 5.4 * error)  # Student's t, 7 degrees of freedom: 0.1 %
+        self.assertLess(error, 0.05 * expected)
+
+    def test_errors(self):
+        with self.assertRaisesRegex(mote.Error, "did you mean 'lightcuts'"):
+            self.light(selection="lightcut")
+
+        def broken(origin, direction, length):
+            raise KeyError("mine")
+        with self.assertRaises(KeyError):
+            self.light(first_hit=broken)
+        with self.assertRaises(ValueError):
+            self.light(paths=16, find_occluded=lambda o, d, lengths: [True]).reflected([(0.5, 0.5, 0)], [(0, 0, 1)])
+
+
 if __name__ == "__main__":
     unittest.main()
