@@ -3,6 +3,8 @@ canvas, the measure named on each axis, signed differences in blue and red with 
 
 tests/pages/check_figures.py checks these in the SVG files of docs/gallery; save() writes an SVG beside each PNG.
 """
+from pathlib import Path
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -94,3 +96,6 @@ def save(made, path):
     metadata = {"Date": None} if str(path).endswith(".svg") else {}
     made.savefig(path, dpi=DPI, metadata=metadata)
     plt.close(made)
+    if metadata:  # matplotlib leaves spaces at the ends of lines
+        text = Path(path).read_text(encoding="utf-8")
+        Path(path).write_text("".join(line.rstrip() + "\n" for line in text.splitlines()), encoding="utf-8")

@@ -4,8 +4,8 @@
 #include "plugins/c/handles.h"
 
 using namespace mote;
-using c::required;
-using core::Rgb, core::Vec3;
+using c::required, c::vec3;
+using core::Rgb;
 
 struct mote_host_light {
     std::unique_ptr<session::HostScene> scene;
@@ -14,8 +14,6 @@ struct mote_host_light {
 };
 
 namespace {
-
-Vec3 vec3(const float* v) { return {v[0], v[1], v[2]}; }
 
 mote_segment segment_of(const session::HostSegment& s) {
     return {{s.origin.x, s.origin.y, s.origin.z}, {s.direction.x, s.direction.y, s.direction.z}, s.length};

@@ -1,7 +1,7 @@
 // Methods over arrays of a host: a hierarchy over its lights, epipolar sampling of its depth buffer,
 // upsampling, visibility queries.
 #include "core/scene/light_tree.h"
-#include "python/bindings/bindings.h"
+#include "python/bindings/arrays.h"
 #include "screenspace/epipolar/depth_buffer.h"
 #include "screenspace/upsampling/upsampled_picture.h"
 #include "screenspace/visibility/exact_counts.h"
@@ -11,20 +11,10 @@ namespace mote::python {
 namespace {
 
 using core::Rgb, core::Vec3;
-using Triple = std::array<double, 3>;
 using Depth = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;  ///< [row][column]
-using Vectors = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Items = nb::ndarray<const std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Queries = nb::ndarray<const std::int64_t, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
 
-Vec3 vec3(const float* v) { return {v[0], v[1], v[2]}; }
-
-template <typename T, typename... Sizes>
-nb::object array_of(std::vector<T> values, Sizes... sizes) {
-    auto* kept = new std::vector<T>(std::move(values));
-    const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-    return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), {std::size_t(sizes)...}, owner));
-}
 nb::object picture_of(const std::vector<Rgb>& light, std::size_t height, std::size_t width) {
     std::vector<float> values;
     for (const Rgb& l : light) values.insert(values.end(), {l.x, l.y, l.z});

@@ -1,28 +1,19 @@
 // Many-light methods over the rays of a host's functions.
 #include "session/host/host_light.h"
 
-#include "python/bindings/bindings.h"
+#include <nanobind/stl/tuple.h>
+
+#include "python/bindings/arrays.h"
 
 namespace mote::python {
 
 namespace {
 
 using core::Rgb, core::Vec3;
-using Triple = std::array<double, 3>;
-using Vectors = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Indices = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Materials = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Hit = std::optional<std::tuple<double, Triple, std::uint32_t>>;
 
-Vec3 vec3(const float* v) { return {v[0], v[1], v[2]}; }
-Vec3 vec3(const Triple& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
 Triple triple(const Vec3& v) { return {v.x, v.y, v.z}; }
-
-template <typename T, typename... Sizes>
-nb::object array_of(std::vector<T> values, Sizes... sizes) {
-    auto* kept = new std::vector<T>(std::move(values));
-    const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-    return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), {std::size_t(sizes)...}, owner));
-}
 
 /// Functions of Python with the scene and the light that call them. Made, used and destroyed with the
 /// interpreter's lock, which is released while light is computed: threads take it for each call.
@@ -58,7 +49,7 @@ class PythonHostLight {
     }
 
     std::size_t size() const { return light_->size(); }
-    nb::object reflected(const Vectors& position, const Vectors& normal, const Indices& material) const {
+    nb::object reflected(const Vectors& position, const Vectors& normal, const Materials& material) const {
         const std::size_t count = position.shape(0);
         if (normal.shape(0) != count || material.shape(0) != count)
             throw std::invalid_argument("each receiver has a position, a normal and a material");
