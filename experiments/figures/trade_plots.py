@@ -44,7 +44,7 @@ def draw(table):
 
 
 def put_into(page, plots):
-    """Replaces the plots of a page by these files: by the heading above a plot, or the only one (None)."""
+    """Replaces the plots of a page by these files: by the heading above a plot, or the only one (None); its table gets their colours."""
     if not page.is_file():
         return
     text = page.read_text(encoding="utf-8")
@@ -53,7 +53,9 @@ def put_into(page, plots):
         heading = None if None in plots else re.findall(r"<h2>(.*?)</h2>", parts[i - 1])[-1]
         plot = plots[heading].read_text(encoding="utf-8")
         parts[i] = own_ids(plot[plot.index("<svg"):].rstrip(), plots[heading].stem)
-    page.write_text("".join(parts), encoding="utf-8")
+    text = re.sub(r'(class="swatch" style="background:)[^"]*("></span>)([^<]+)',
+                  lambda found: found[1] + plotting.colour(found[3]) + found[2] + found[3], "".join(parts))
+    page.write_text(text, encoding="utf-8")
 
 
 def own_ids(plot, name):
