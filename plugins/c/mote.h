@@ -436,6 +436,41 @@ mote_host_light_size(const mote_host_light* light); /* VPLs, ray lights with VPL
 MOTE_API mote_status mote_host_light_reflect(mote_host_light* light, const mote_receiver* receivers,
                                              size_t count, float* radiance);
 
+/* Fronts, from which the corners run counter-clockwise, send and receive light; backs hide it. */
+typedef struct mote_triangles {
+    const float* positions; /* [position_count][3] [m] */
+    size_t position_count;
+    const uint32_t* triangles; /* [triangle_count][3], indices into positions */
+    size_t triangle_count;
+} mote_triangles;
+
+typedef struct mote_micro_options {
+    size_t struct_size;
+    mote_triangles mesh;
+    const float* radiance; /* [triangle_count][3], of each front [W/(m^2 sr)] */
+    uint32_t points;       /* that represent the surfaces; 0: 65536 */
+    uint32_t side;         /* texels of a buffer, at most 256; 0: 16 */
+    uint32_t passes;       /* buffers of a receiver; 0: 1 */
+    uint64_t seed;
+} mote_micro_options;
+
+/* Micro-buffers (docs/methods/micro_rendering.md): irradiance [count][3] of the receivers [W/m^2]. Their
+ * materials do not count. */
+MOTE_API mote_status mote_micro_irradiance(const mote_micro_options* options, const mote_receiver* receivers,
+                                           size_t count, float* irradiance);
+
+typedef struct mote_bundle_link { /* two triangles whose fronts see each other along a bundle */
+    uint32_t from, to;            /* along the direction */
+    double area;                  /* perpendicular to the direction, by the rays that link them [m^2] */
+} mote_bundle_link;
+
+/* A global ray-bundle (docs/methods/ray_bundles.md): all links along a direction, of parallel rays `spacing`
+ * [m] apart. `offset`: of the rays, in [0, 1)^2 of the spacing; uniform, areas have no bias; null: the
+ * middle. `count`: all links, of which the first `room` are written to `links`. */
+MOTE_API mote_status mote_bundle_links(const mote_triangles* mesh, const float direction[3], double spacing,
+                                       const float offset[2], mote_bundle_link* links, size_t room,
+                                       size_t* count);
+
 #ifdef __cplusplus
 }
 #endif

@@ -128,3 +128,28 @@ def count_visible(items: np.ndarray, rectangles: Sequence[Sequence[int]], count:
     if items.max(initial=-1) >= count:
         raise ValueError(f"the picture shows item {items.max()}, and there are {count}")
     return _mote.count_visible(np.where(items < 0, _NO_ITEM, items).astype(np.uint32), count, queries)
+
+
+def micro_irradiance(corners: np.ndarray, triangles: np.ndarray, radiance: np.ndarray, position: np.ndarray, normal: np.ndarray, *,
+                     points: int = 65536, side: int = 16, passes: int = 1, seed: int = 1) -> np.ndarray:
+    """Irradiance (n, 3) of receivers [W/m^2] by micro-buffers (docs/methods/micro_rendering.md).
+
+    corners: (m, 3) [m]; triangles: (k, 3), indices into them, counter-clockwise from the front, which alone sends light; radiance:
+    (k, 3), of each front [W/(m^2 sr)]. position, normal: (n, 3), of the receivers. points: that represent the surfaces. side: texels
+    of a buffer. passes: buffers of a receiver. Raises mote.Error.
+    """
+    rows = lambda values: np.ascontiguousarray(values, np.float32)
+    return _mote.micro_irradiance(rows(corners), np.ascontiguousarray(triangles, np.uint32), rows(radiance), rows(position), rows(normal),
+                                  points, side, passes, seed)
+
+
+def bundle_links(corners: np.ndarray, triangles: np.ndarray, direction: Sequence[float], spacing: float,
+                 offset: Sequence[float] = (0.5, 0.5)) -> Tuple[np.ndarray, np.ndarray]:
+    """Pairs of triangles whose fronts see each other along a direction, (n, 2), and their areas perpendicular to it, (n) [m^2], by a
+    global ray-bundle (docs/methods/ray_bundles.md): parallel rays, `spacing` [m] apart.
+
+    corners: (m, 3) [m]; triangles: (k, 3), indices into them, counter-clockwise from the front. offset: of the rays, in [0, 1)^2 of
+    the spacing; uniform, areas have no bias. Raises mote.Error.
+    """
+    return _mote.bundle_links(np.ascontiguousarray(corners, np.float32), np.ascontiguousarray(triangles, np.uint32),
+                              tuple(map(float, direction)), float(spacing), tuple(map(float, offset)))

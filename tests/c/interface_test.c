@@ -702,6 +702,36 @@ static void test_host_light(void) {
     mote_host_light_free(light), mote_host_light_free(NULL);
 }
 
+/* A square of radiance 1 above a square: Howell's catalogue, B-3, and the area that crosses. */
+static void test_triangles(void) {
+    static const float corners[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1};
+    static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6};
+    static const float radiance[] = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1}, up[3] = {0, 0, 1};
+    const mote_receiver below = {{0.5f, 0.5f, 0.01f}, {0, 0, 1}, 0};
+    const double p = sqrt(1.25), closed_form = 4 * 0.5 / p * atan(0.5 / p);
+    mote_bundle_link links[4];
+    size_t count = 0, i;
+    double area = 0;
+    float irradiance[3];
+    mote_micro_options options;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.mesh.positions = corners, options.mesh.position_count = 8;
+    options.mesh.triangles = triangles, options.mesh.triangle_count = 4;
+    options.radiance = radiance, options.points = 8000, options.side = 32, options.passes = 4;
+    CHECK(mote_micro_irradiance(&options, &below, 1, irradiance) == MOTE_OK);
+    CHECK(irradiance[1] > 0.99 * closed_form && irradiance[1] < 1.2 * closed_form); /* discs at the edge */
+    options.radiance = NULL;
+    CHECK(mote_micro_irradiance(&options, &below, 1, irradiance) == MOTE_INVALID_ARGUMENT);
+    CHECK(mote_bundle_links(&options.mesh, up, 0.01, NULL, links, 4, &count) == MOTE_OK);
+    CHECK(count == 4 || count == 2); /* rays on diagonals may meet either triangle */
+    for (i = 0; i < count; ++i) area += links[i].area;
+    CHECK(fabs(area - 1) < 0.04 && links[0].from < 2 && links[0].to >= 2);
+    CHECK(mote_bundle_links(&options.mesh, up, 0.01, NULL, NULL, 0, &count) == MOTE_OK);
+    CHECK(mote_bundle_links(&options.mesh, up, 0.0, NULL, links, 4, &count) == MOTE_INPUT_ERROR);
+    CHECK(mote_bundle_links(NULL, up, 0.01, NULL, links, 4, &count) == MOTE_INVALID_ARGUMENT);
+}
+
 /* Resident pages of this process. */
 static long resident(void) {
     long all = 0, in_memory = 0;
@@ -754,6 +784,7 @@ int main(int argc, char** argv) {
     test_upsample();
     test_count_visible();
     test_host_light();
+    test_triangles();
     test_leaks();
     printf("%d checks, %d failures\n", checks, failures);
     return failures > 0;

@@ -137,5 +137,25 @@ class HostLightTest(unittest.TestCase):
             self.light(paths=16, find_occluded=lambda o, d, lengths: [True]).reflected([(0.5, 0.5, 0)], [(0, 0, 1)])
 
 
+class TrianglesTest(unittest.TestCase):
+    corners = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    triangles = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6)]
+
+    def test_square_above_a_receiver(self):
+        p = math.sqrt(1.25)
+        closed_form = 4 * 0.5 / p * math.atan(0.5 / p)  # Howell's catalogue, B-3
+        found = mote.micro_irradiance(self.corners, self.triangles, [(0, 0, 0)] * 2 + [(1, 2, 0)] * 2, [(0.5, 0.5, 0.01)], [(0, 0, 1)],
+                                      points=8000, side=32, passes=4)
+        self.assertTrue(0.99 * closed_form < found[0, 0] < 1.2 * closed_form)  # discs of points reach beyond the edge
+        np.testing.assert_allclose(found[0], found[0, 0] * np.array([1, 2, 0]), rtol=1e-5)
+
+    def test_squares_linked(self):
+        pairs, areas = mote.bundle_links(self.corners, self.triangles, (0, 0, 1), 0.01)
+        self.assertLess(abs(areas.sum() - 1), 0.04)
+        self.assertTrue((pairs[:, 0] < 2).all() and (pairs[:, 1] >= 2).all())
+        with self.assertRaisesRegex(mote.Error, "names corner 9"):
+            mote.bundle_links(self.corners, [(0, 1, 9)], (0, 0, 1), 0.01)
+
+
 if __name__ == "__main__":
     unittest.main()
