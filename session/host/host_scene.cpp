@@ -89,9 +89,9 @@ const core::ForeignSurface& HostScene::surface(std::uint32_t material) const {
 }
 
 std::optional<core::SurfaceHit> HostScene::hit(const core::Ray& ray) const {
-    const HostSegment asked = segment(ray.origin, ray.direction, ray.t_min, ray.t_max);
-    const std::optional<HostHit> found = data_.first_hit(asked);
-    if (!found || !(found->distance > 0.0f && found->distance < asked.length)) return {};
+    const HostSegment way = segment(ray.origin, ray.direction, ray.t_min, ray.t_max);
+    const std::optional<HostHit> found = data_.first_hit(way);
+    if (!found || !(found->distance > 0.0f && found->distance < way.length)) return {};
     if (!is_unit(found->normal)) throw core::InputError("the normal of a hit is not unit");
     const Vec3 normal = glm::dot(found->normal, ray.direction) < 0.0f ? found->normal : -found->normal;
     return surface(found->material).hit(ray, ray.t_min + found->distance, normal, offset_);

@@ -7,7 +7,7 @@
 
 namespace mote::session {
 
-/// What a ray of the host may meet.
+/// Segment of a ray, as the host traces it.
 struct HostSegment {
     core::Vec3 origin{0.0f}, direction{0.0f};  ///< [m]; unit
     float length = 0.0f;                       ///< [m], infinity for a ray

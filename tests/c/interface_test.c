@@ -724,7 +724,7 @@ static void test_triangles(void) {
     options.radiance = NULL;
     CHECK(mote_micro_irradiance(&options, &below, 1, irradiance) == MOTE_INVALID_ARGUMENT);
     CHECK(mote_bundle_links(&options.mesh, up, 0.01, NULL, links, 4, &count) == MOTE_OK);
-    CHECK(count == 4 || count == 2); /* rays on diagonals may meet either triangle */
+    CHECK(count >= 2 && count <= 4); /* rays on the diagonals may meet either triangle */
     for (i = 0; i < count; ++i) area += links[i].area;
     CHECK(fabs(area - 1) < 0.04 && links[0].from < 2 && links[0].to >= 2);
     CHECK(mote_bundle_links(&options.mesh, up, 0.01, NULL, NULL, 0, &count) == MOTE_OK);

@@ -144,9 +144,9 @@ TEST_CASE("photon maps and VPLs agree in the middle of a host's walls", "[host][
 
 TEST_CASE("a host's function for shadow rays is called for them, and decides", "[host]") {
     session::HostSceneData data = room();
-    std::atomic<std::size_t> asked{0};
+    std::atomic<std::size_t> queries{0};
     data.find_occluded = [&](std::span<const session::HostSegment> segments, std::span<std::uint8_t> hidden) {
-        asked += segments.size();
+        queries += segments.size();
         for (std::size_t i = 0; i < segments.size(); ++i) hidden[i] = wall(segments[i]).has_value();
     };
     const auto where = places(3, 20);
@@ -154,7 +154,7 @@ TEST_CASE("a host's function for shadow rays is called for them, and decides", "
     const session::HostScene by_packets(data), by_rays(room());
     CHECK(session::HostLight(by_packets, settings).reflected(where) ==
           session::HostLight(by_rays, settings).reflected(where));
-    CHECK(asked > 1000);
+    CHECK(queries > 1000);
     data.find_occluded = [](auto, std::span<std::uint8_t> hidden) {
         std::fill(hidden.begin(), hidden.end(), std::uint8_t(1));
     };
