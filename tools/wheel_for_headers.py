@@ -39,7 +39,9 @@ def main():
     own_module = next(chosen.build.rglob(f"_mote.cpython-{own_tag[2:]}-*.so"))
     module = Path(str(own_module).replace(own_tag[2:], tag[2:]))
     for line in commands(chosen.build, "_mote"):
-        line = line.replace(own_headers, str(headers)).replace("python/CMakeFiles/", f"python/{tag}/").replace(own_module.name, module.name)
+        for own, other in ((own_headers, headers), ("python/CMakeFiles/", f"python/{tag}/"), ("python/libnanobind", f"python/{tag}/libnanobind"),
+                           (own_module.name, module.name)):
+            line = line.replace(str(own), str(other))
         if " -c " in line:
             line = line.replace(" -c ", f" -idirafter {shlex.quote(str(include))} -c ")
         for output in re.findall(r"-o (\S+)", line):
