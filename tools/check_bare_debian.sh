@@ -1,24 +1,30 @@
 #!/bin/bash
-# On a Debian 12 that has nothing: do the packages bring what the command and the examples need?
+# On a Debian that has nothing: do the packages bring what the command and the examples need?
 #
-#   tools/check_bare_debian.sh [--build BUILD] [ROOT]
+#   tools/check_bare_debian.sh [--build BUILD] [ROOT]                           Debian 12, packages of this system's build
+#   tools/check_bare_debian.sh --release trixie --packages FOLDER [ROOT]        packages that were made there
 #
-# Makes a Debian of the smallest kind in ROOT (build/bare_debian; debootstrap, kept for the next time, of which the
-# packages of the last check are taken away first), installs the .deb files of BUILD (build/release, built) by
+# Packages depend on libraries of the system that they were made on. tools/check_bare_commands.sh leaves those of Debian 13 in
+# build/bare_trixie/srv/mote/build/release/deb_test.
+# Makes a Debian of the smallest kind in ROOT (build/bare_debian_RELEASE; debootstrap, kept for the next time, of which the
+# packages of the last check are taken away first), installs the .deb files of FOLDER or of BUILD (build/release, built) by
 # `apt-get install` with what they declare, nothing that is merely recommended, renders a scene, installs g++ and cmake,
 # and builds and runs each example from an empty folder. Needs root, debootstrap and Debian's packages (300 MB); not part of
 # ./test. Its siblings: check_bare_commands.sh runs ./quickstart and ./test on a bare Debian 12 and 13, check_bare_wheel.sh
 # installs the wheel there.
 set -euo pipefail
 source=$(cd "$(dirname "$0")/.." && pwd)
-build=$source/build/release root=$source/build/bare_debian
+build=$source/build/release release=bookworm packages= root=
 while (($#)); do
   case $1 in
     --build) build=$(realpath "$2") && shift ;;
+    --release) release=$2 && shift ;;
+    --packages) packages=$(realpath "$2") && shift ;;
     *) root=$(realpath -m "$1") ;;
   esac
   shift
 done
+root=${root:-$source/build/bare_debian_$release}
 if ((EUID != 0)) || ! command -v debootstrap > /dev/null; then
   echo "error: needs root, and debootstrap (apt-get install debootstrap)" >&2
   exit 1
@@ -27,10 +33,10 @@ fi
 step() { echo "== $*"; }
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 HOME=/root DEBIAN_FRONTEND=noninteractive "$@"; }
 install() { inside apt-get install -y -q --no-install-recommends "$@" >> "$log" 2>&1 || { tail -n 20 "$log" && exit 1; }; }
-log=$build/bare_debian.log
+log=$root.log
 : > "$log"
 
-[[ -e $root/etc/debian_version ]] || { step "a Debian in $root" && debootstrap --variant=minbase bookworm "$root" >> "$log"; }
+[[ -e $root/etc/debian_version ]] || { step "a Debian in $root" && debootstrap --variant=minbase "$release" "$root" >> "$log"; }
 inside apt-get update -q >> "$log"
 for package in mote-dev mote g++ cmake make; do  # together they fail where one is not there
   inside apt-get purge -y -q "$package" >> "$log" 2>&1 || true
@@ -39,10 +45,13 @@ inside apt-get autoremove -y -q --purge >> "$log" 2>&1
 trap 'umount "$root/proc"' EXIT
 mount -t proc proc "$root/proc"
 
-step "Debian packages of $build"
-rm -rf "$root/check" "$build/bare_debian" && mkdir -p "$root/check"
-(cd "$build" && cpack -G DEB -B "$build/bare_debian" >> "$log" 2>&1)
-cp "$build"/bare_debian/*.deb "$root/check"
+step "Debian packages of ${packages:-$build}"
+rm -rf "$root/check" && mkdir -p "$root/check"
+if [[ ! $packages ]]; then
+  packages=$build/bare_debian
+  rm -rf "$packages" && (cd "$build" && cpack -G DEB -B "$packages" >> "$log" 2>&1)
+fi
+cp "$packages"/*.deb "$root/check"
 mkdir "$root/check/scenes" && cp -r "$source/scenes/cornell_box.xml" "$source/scenes/meshes" "$root/check/scenes"
 
 step "the command alone"

@@ -5,7 +5,7 @@
 #
 # Makes a Debian of the smallest kind with python3-venv in build/bare_wheel_RELEASE (debootstrap; kept for the next time),
 # installs the wheel of build/wheelhouse into a fresh environment there, renders with the command and from Python, reads a
-# VDB file, and prints how long each took. Needs root, debootstrap, Debian's packages (100 MB each) and PyPI for NumPy.
+# VDB file, and prints how long each took. That of the other release's Python: tools/make_wheel.sh --also. Needs root, debootstrap, Debian's packages (100 MB each) and PyPI for NumPy.
 set -euo pipefail
 source=$(cd "$(dirname "$0")/.." && pwd)
 (($#)) || set -- bookworm trixie

@@ -14,7 +14,7 @@ import numpy as np
 from blender_runs import PATH, SCENES, agreement, blender, log_of, run
 from claims import Claims
 from origin import ROOT
-from panels import Canvas, blocks, show, show_difference
+from panels import BAR, Canvas, blocks, show, show_difference
 from renders import luminance, main, write_csv
 
 WIDTH, HEIGHT, BLOCK, SCALE = 416, 234, 8, 20  # of a panel [pixels]; of the means in the last column; and its factor
@@ -58,7 +58,7 @@ def program_of(mote):
 
 
 def draw(path, found):
-    step = HEIGHT + 34
+    step = HEIGHT + 34 + BAR
     canvas = Canvas(3 * WIDTH + 40, len(found) * step + 10)
     for row, (scene, log) in enumerate(found.items()):
         pictures = {name: log[name]["pictures"].mean(axis=0) for name in ("Cycles", "mote")}
@@ -66,9 +66,8 @@ def draw(path, found):
         panel = lambda column: canvas.panel(10 + column * (WIDTH + 10), row * step + 28, WIDTH, HEIGHT)
         show(panel(0), pictures["Cycles"], exposure, f"Cycles: {SCENES[scene]}")
         show(panel(1), pictures["mote"], exposure, "mote")
-        apart, base = (blocks(padded(p), BLOCK) for p in (pictures["mote"] - pictures["Cycles"], pictures["Cycles"]))
-        show_difference(panel(2), apart * exposure, SCALE, f"difference x {SCALE}, means of {BLOCK} x {BLOCK} pixels",
-                        luminance(base) * exposure)
+        apart = blocks(padded(pictures["mote"] - pictures["Cycles"]), BLOCK)
+        show_difference(panel(2), apart, exposure, SCALE, f"difference, means of {BLOCK} x {BLOCK} pixels")
     canvas.save(path)
 
 

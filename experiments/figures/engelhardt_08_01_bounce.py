@@ -13,7 +13,7 @@ import sys
 import numpy as np
 from claims import Claims
 from micro_figures import BUNNY, CORNELL, IndirectView, micro, zoom
-from panels import TITLE, Canvas, show, show_difference
+from panels import BAR, TITLE, Canvas, show, show_difference
 from renders import luminance, main, write_csv
 
 METHODS = {"every pixel": 1, "1/16 of the pixels": 4}
@@ -57,19 +57,19 @@ SMOOTHED = ("away from edges pixels of this size blur nothing, and light that is
 def draw(panels, output):
     heights = [view.truth.shape[0] * zoom(view.truth.shape[1]) for _, view, _, _ in panels]
     widths = [view.truth.shape[1] * zoom(view.truth.shape[1]) for _, view, _, _ in panels]
-    canvas = Canvas(5 * max(widths) + 60, sum(heights) + len(panels) * (TITLE + 10) + 10)
+    canvas = Canvas(5 * max(widths) + 60, sum(heights) + len(panels) * (TITLE + BAR + 10) + 10)
     y = TITLE
     for (title, view, pictures, error), height, width in zip(panels, heights, widths):
         exposure = 0.6 / np.percentile(luminance(view.truth), 90)
         images = [(f"{n}: {error[n]:.1%}", view.light(p), None) for n, p in pictures.items()]
-        images += [(f"{title}: path", view.truth, None)] + [(f"{n}, difference x 3", None, view.light(p) - view.truth) for n, p in pictures.items()]
+        images += [(f"{title}: path", view.truth, None)] + [(f"{n}, difference", None, view.light(p) - view.truth) for n, p in pictures.items()]
         for k, (text, image, difference) in enumerate(images):
             axes = canvas.panel(10 + k * (width + 10), y, width, height)
             if difference is None:
                 show(axes, image, exposure, text)
             else:
-                show_difference(axes, difference, 3 * exposure, text)
-        y += height + TITLE + 10
+                show_difference(axes, difference, exposure, 3, text)
+        y += height + TITLE + BAR + 10
     canvas.save(output.with_suffix(".png"))
 
 

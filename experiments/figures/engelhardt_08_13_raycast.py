@@ -11,7 +11,7 @@ import sys
 import numpy as np
 from claims import Claims
 from micro_figures import BUNNY, IndirectView, micro, zoom
-from panels import TITLE, Canvas, show, show_difference
+from panels import BAR, TITLE, Canvas, show, show_difference
 from renders import luminance, main, write_csv
 from tokuyoshi_04_mis import regions
 
@@ -44,12 +44,12 @@ def figure(mote, quick, output):
 def draw(view, pictures, error, output):
     height, width = (k * zoom(view.truth.shape[1]) for k in view.truth.shape[:2])
     exposure = 0.6 / np.percentile(luminance(view.truth), 95)
-    canvas = Canvas(3 * (width + 10) + 10, 2 * (height + TITLE + 10) + 10)
+    canvas = Canvas(3 * (width + 10) + 10, 2 * (height + TITLE + 10) + BAR + 10)
     show(canvas.panel(10, TITLE, width, height), view.truth, exposure, "path")
     for k, (cast, picture) in enumerate(pictures.items(), 1):
         x = 10 + k * (width + 10)
         show(canvas.panel(x, TITLE, width, height), view.light(picture), exposure, f"{NAMES[cast]}: {error[cast]:.1%}")
-        show_difference(canvas.panel(x, height + 2 * TITLE + 10, width, height), view.light(picture) - view.truth, 3 * exposure, "difference x 3")
+        show_difference(canvas.panel(x, height + 2 * TITLE + 10, width, height), view.light(picture) - view.truth, exposure, 3, "difference")
     canvas.save(output.with_suffix(".png"))
 
 

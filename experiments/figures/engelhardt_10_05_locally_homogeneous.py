@@ -14,7 +14,7 @@ import numpy as np
 import panels
 from claims import Claims
 from measure import series_error
-from panels import TITLE, Canvas, clean, enlarged, mark, show, show_difference
+from panels import BAR, TITLE, Canvas, clean, enlarged, mark, show, show_difference
 from renders import RECOVERED, approximate, luminance, main, mean_and_error, write_csv
 
 VISIBLE = 0.02  # of the brightness: about the step that an eye distinguishes
@@ -67,14 +67,13 @@ def draw(pictures, clean, path):
     difference = enlarged(difference, 4, height, width)
     exposure = 0.8 / np.quantile(luminance(clean), 0.985)
     plume = slice(int(0.08 * height), int(0.83 * height)), slice(int(0.527 * width), int(0.767 * width))
-    canvas = Canvas(1280, 858)
+    canvas = Canvas(1280, 858 + BAR)
     axes = canvas.panel(0, TITLE, 640, 400)
     show(axes, clean, exposure, "all light, by mote_layers, filtered; the frame is enlarged")
     mark(axes, plume)
-    for i, (times, text) in enumerate(((0, "exact"), (1, "mean extinction"), (16, "its difference x16"))):
+    for i, (times, text) in enumerate(((0, "exact"), (1, "mean extinction"), (16, "16 times the difference"))):
         show(canvas.panel(648 + 213 * i, TITLE, 205, 400), (clean + times * difference)[plume], exposure, text)
-    show_difference(canvas.panel(0, 2 * TITLE + 408, 636, 398), difference, 16 * exposure,
-                    "difference x16 (green: too dark, red: too bright), means over 4 x 4 pixels", exposure * luminance(clean))
+    show_difference(canvas.panel(0, 2 * TITLE + 408, 636, 398), difference, exposure, 16, "difference, means over 4 x 4 pixels")
     show(canvas.panel(644, 2 * TITLE + 408, 636, 398), clean + 16 * difference, exposure,
          "the picture if the difference were 16 times as large")
     canvas.save(path)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from claims import Claims
-from panels import TITLE, Canvas, clean, enlarged, show, show_difference
+from panels import BAR, TITLE, Canvas, clean, enlarged, show, show_difference
 from renders import RECOVERED, approximate, luminance, main, mean_and_error, write_csv
 
 WALL = Path(__file__).resolve().parent / "scenes" / "thin_wall.xml"
@@ -87,7 +87,7 @@ def check(pairs):
 def draw(pairs, cleans, path):
     """A line for each case: a clean picture, without visibility (where that shows), and differences. The room is by
     mote_layers; of the fog beside the walls, what scatters more than once is the mean of the VPLs' pictures."""
-    canvas = Canvas(1280, 3 * TITLE + 263 + 2 * 281 + 16)
+    canvas = Canvas(1280, 3 * (TITLE + BAR) + 263 + 2 * 281 + 16)
     y = 0
     for case, pictures in pairs.items():
         picture = cleans[case]
@@ -103,14 +103,13 @@ def draw(pairs, cleans, path):
         high = 263 if case == "room" else 281
         column = [canvas.panel(429 * i + 1, y, 421, high) for i in range(3)]
         show(column[0], picture, exposure, f"{case}: with local visibility")
-        scene = exposure * luminance(picture)
         if case != "room":
             show(column[1], picture + enlarged(difference, 2, height, width), exposure, "without")
         for axes, scale in zip(column[1 if case == "room" else 2:], (16, SCALE)):
             n = 4 if case == "room" else 2
-            show_difference(axes, enlarged(difference, n, height, width), scale * exposure,
-                            f"difference x{scale}, means over {n} x {n} pixels", scene)
-        y += high + 8
+            show_difference(axes, enlarged(difference, n, height, width), exposure, scale,
+                            f"difference, means over {n} x {n} pixels")
+        y += high + BAR + 8
     canvas.save(path)
 
 

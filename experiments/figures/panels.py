@@ -8,10 +8,12 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+import plotting
 from renders import luminance
 
 DPI = 100
 TITLE = 26  # pixels above a panel that its title takes
+BAR = 38  # pixels below a signed difference that its colour bar takes
 
 
 class Canvas:
@@ -55,10 +57,18 @@ def show(axes, image, exposure, text=None):
         title(axes, text)
 
 
-def show_difference(axes, difference, scale, text=None, scene=0.0):
-    """As in the papers: green where it is too dark, red where it is too bright; the scene, dim and grey, says where."""
-    d = luminance(difference) * scale
-    show(axes, np.stack([np.maximum(d, 0), np.maximum(-d, 0), 0 * d], axis=2) + 0.03 * np.asarray(scene)[..., None], 1, text)
+def show_difference(axes, difference, exposure, times, text=None):
+    """Luminance of a signed difference as a fraction of the white of pictures with this exposure, `times` as strong: blue too dark, red
+    too bright, full colour at 1 / times. The colour bar takes BAR pixels below the axes."""
+    box, figure = axes.get_position(), axes.figure
+    pixel = 1 / (DPI * figure.get_figheight())
+    bar = figure.add_axes([box.x0, box.y0 - 15 * pixel, box.width, 10 * pixel])
+    wide = box.width * DPI * figure.get_figwidth() > 380
+    plotting.difference(axes, exposure * luminance(difference), 1 / times, "luminance difference / white" if wide else "difference / white", bar)
+    bar.tick_params(labelsize=11, length=3, pad=2)
+    axes.set_aspect("auto")
+    if text:
+        title(axes, text)
 
 
 def mark(axes, piece, color="white"):

@@ -3,6 +3,8 @@ canvas, the measure named on each axis, signed differences in blue and red with 
 
 tests/pages/check_figures.py checks these in the SVG files of docs/gallery; save() writes an SVG beside each PNG.
 """
+from pathlib import Path
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -72,13 +74,20 @@ def label_ends(axes, ends, gap=15, size=10):
                       fontweight="bold", arrowprops={"arrowstyle": "-", "color": own, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 3, "relpos": (0, 0.5)})
 
 
-def difference(axes, values, scale, measure):
-    """A signed difference: blue too dark, red too bright, full colour at `scale`; the colour bar names the measure."""
+def difference(axes, values, scale, measure, below=None):
+    """A signed difference: blue too dark, red too bright, full colour at `scale`; the colour bar names the measure. It stands right of
+    the axes, or lies in the axes `below`, with the measure between its ends."""
     shown = axes.imshow(values, cmap="RdBu_r", vmin=-scale, vmax=scale, interpolation="nearest")
     shown.set_gid("difference")
-    bar = axes.figure.colorbar(shown, ax=axes, shrink=0.9)
+    if below is None:
+        bar = axes.figure.colorbar(shown, ax=axes, shrink=0.9)
+        bar.set_label(measure)
+    else:
+        bar = axes.figure.colorbar(shown, cax=below, orientation="horizontal", ticks=[-scale, 0, scale])
+        below.set_xticklabels([f"-{100 * scale:.3g} %", measure, f"+{100 * scale:.3g} %"])
+        for label, anchor in zip(below.get_xticklabels(), ("left", "center", "right")):
+            label.set_horizontalalignment(anchor)
     bar.ax.set_gid("colour bar")
-    bar.set_label(measure)
     axes.set(xticks=[], yticks=[])
 
 
@@ -87,3 +96,6 @@ def save(made, path):
     metadata = {"Date": None} if str(path).endswith(".svg") else {}
     made.savefig(path, dpi=DPI, metadata=metadata)
     plt.close(made)
+    if metadata:  # matplotlib leaves spaces at the ends of lines
+        text = Path(path).read_text(encoding="utf-8")
+        Path(path).write_text("".join(line.rstrip() + "\n" for line in text.splitlines()), encoding="utf-8")

@@ -6,6 +6,7 @@
 import importlib
 import sys
 
+import denoiser_plot
 from origin import ROOT, csv_text, write_png_text
 
 sys.path.insert(0, str(ROOT / "experiments/studies"))
@@ -17,3 +18,5 @@ if __name__ == "__main__":
         for suffix in (".svg", ".png"):
             importlib.import_module(name).plot_table(table, table.with_suffix(suffix))
         write_png_text(table.with_suffix(".png"), csv_text(table))
+    table = ROOT / "docs/gallery/denoiser_quality.csv"
+    denoiser_plot.plot_table(table, table.with_suffix(".svg"))

@@ -163,12 +163,6 @@ def show(axes, image, exposure, title=None):
         axes.set_title(title, fontsize=9)
 
 
-def show_difference(axes, difference, scale, title=None):
-    """As in the papers: green where it is too dark, red where it is too bright."""
-    d = luminance(difference) * scale
-    show(axes, np.stack([np.maximum(d, 0), np.maximum(-d, 0), 0 * d], axis=2), 1, title)
-
-
 def write_csv(path, header, rows):
     """A table; the claims that were checked follow it when the script ends."""
     with open(path, "w", newline="", encoding="utf-8") as file:

@@ -43,6 +43,8 @@ T& required(T* pointer, const char* name) {
     return *pointer;
 }
 
+inline core::Vec3 vec3(const float* v) { return {v[0], v[1], v[2]}; }
+
 /// Options in this library's own version: from null (defaults), from an older header (the rest is zero), or
 /// from a newer one whose further members are zero. `smallest` is the size of the first version. Throws
 /// InvalidArgument.

@@ -6,7 +6,7 @@
 #include "plugins/c/handles.h"
 
 using namespace mote;
-using c::required;
+using c::required, c::vec3;
 using core::Vec3;
 
 struct mote_light_tree {
@@ -15,7 +15,6 @@ struct mote_light_tree {
 
 namespace {
 
-Vec3 vec3(const float* v) { return {v[0], v[1], v[2]}; }
 bool is_unit(const Vec3& n) { return std::fabs(glm::dot(n, n) - 1.0f) < 1e-3f; }
 
 core::LightBounds bounds_of(const mote_light& light) {

@@ -78,8 +78,8 @@ MOTE_API mote_scene* mote_scene_new(void);
 /* Null is allowed. Pictures that were rendered from it stay. */
 MOTE_API void mote_scene_free(mote_scene* scene);
 
-/* A scene file (docs/scene-format.md), glTF, GLB or pbrt; or its text. `options` may be null. A scene that was
- * loaded before is replaced if this succeeds. */
+/* A scene file (docs/scene-format.md), glTF, GLB or pbrt; or its text. `options` may be null. A scene that
+ * was loaded before is replaced if this succeeds. */
 MOTE_API mote_status mote_scene_load_file(mote_scene* scene, const char* path,
                                           const mote_load_options* options);
 MOTE_API mote_status mote_scene_load_text(mote_scene* scene, const char* xml,
@@ -370,6 +370,106 @@ MOTE_API mote_status mote_light_tree_sample(const mote_light_tree* tree, const f
  * cannot be. */
 MOTE_API double mote_light_tree_probability(const mote_light_tree* tree, const float position[3],
                                             const float normal[3], size_t light);
+
+/* ---- many-light methods over the rays of another renderer -------------------------------------------------
+ */
+
+typedef struct mote_segment {
+    float origin[3], direction[3]; /* [m]; unit */
+    float length;                  /* [m], infinity for a ray */
+} mote_segment;
+typedef struct mote_hit {
+    float distance;    /* from the origin, above 0 [m] */
+    float normal[3];   /* geometric, unit, on either side */
+    uint32_t material; /* below mote_host_options::material_count */
+} mote_hit;
+typedef struct mote_lamp { /* shines to all sides */
+    double position[3];    /* [m] */
+    float intensity[3];    /* [W/sr] */
+} mote_lamp;
+typedef struct mote_receiver { /* a place on a surface, seen along its normal */
+    float position[3], normal[3];
+    uint32_t material;
+} mote_receiver;
+
+typedef struct mote_host_options {
+    size_t struct_size;
+    const float* reflectance; /* [material_count][3], of diffuse materials, both sides alike, in [0, 1] */
+    size_t material_count;
+    const mote_lamp* lamps;
+    size_t lamp_count;
+    float lower[3], upper[3];           /* a box that holds all surfaces and lamps [m] */
+    float scattering[3], absorption[3]; /* of fog that fills all space [1/m] */
+    double anisotropy;                  /* mean cosine of scattering in fog, in (-1, 1) */
+    void* user;
+    /* The closest surface on a segment; returns 0 where there is none. From many threads at once. */
+    int (*first_hit)(void* user, const mote_segment* segment, mote_hit* hit);
+    /* For shadow rays, may be null: sets hidden[i], which is 0, to 1 where a surface is on segment i. From
+     * many threads at once. */
+    void (*find_occluded)(void* user, const mote_segment* segments, size_t count, unsigned char* hidden);
+} mote_host_options;
+
+typedef struct mote_host_light_options {
+    size_t struct_size;
+    const char* method; /* "vpl" (also null), "ray_lights" (in fog), "photon_map" */
+    const char*
+        selection;  /* of VPLs: a type of the scene reference, such as "stochastic_lightcuts"; null: all */
+    uint32_t paths; /* light paths; 0: 1024 */
+    double bound;   /* of the geometry term of VPLs [1/m^2]; 0: none */
+    int compensation_steps; /* of the light that the bound takes from VPLs; -1: exact */
+    uint32_t neighbours;    /* photons of an estimate; 0: 50 */
+    uint64_t seed;
+} mote_host_light_options;
+
+/* Indirect light in a scene of the host: one set of light paths, any number of receivers. */
+typedef struct mote_host_light mote_host_light;
+MOTE_API mote_host_light* mote_host_light_new(void);        /* never null but where memory is out */
+MOTE_API void mote_host_light_free(mote_host_light* light); /* null is allowed */
+MOTE_API const char* mote_host_light_error(const mote_host_light* light); /* of the last call that failed */
+/* Traces the light paths, in parallel. The options are copied; `user` must live as long as the handle. */
+MOTE_API mote_status mote_host_light_trace(mote_host_light* light, const mote_host_options* scene,
+                                           const mote_host_light_options* options);
+MOTE_API size_t
+mote_host_light_size(const mote_host_light* light); /* VPLs, ray lights with VPLs, or photons */
+/* radiance [count][3]: what each receiver reflects along its normal [W/(m^2 sr)], without what reaches it
+ * straight from lamps. Receivers that follow each other should be near each other. */
+MOTE_API mote_status mote_host_light_reflect(mote_host_light* light, const mote_receiver* receivers,
+                                             size_t count, float* radiance);
+
+/* Fronts, from which the corners run counter-clockwise, send and receive light; backs hide it. */
+typedef struct mote_triangles {
+    const float* positions; /* [position_count][3] [m] */
+    size_t position_count;
+    const uint32_t* triangles; /* [triangle_count][3], indices into positions */
+    size_t triangle_count;
+} mote_triangles;
+
+typedef struct mote_micro_options {
+    size_t struct_size;
+    mote_triangles mesh;
+    const float* radiance; /* [triangle_count][3], of each front [W/(m^2 sr)] */
+    uint32_t points;       /* that represent the surfaces; 0: 65536 */
+    uint32_t side;         /* texels of a buffer, at most 256; 0: 16 */
+    uint32_t passes;       /* buffers of a receiver; 0: 1 */
+    uint64_t seed;
+} mote_micro_options;
+
+/* Micro-buffers (docs/methods/micro_rendering.md): irradiance [count][3] of the receivers [W/m^2]. Their
+ * materials do not count. */
+MOTE_API mote_status mote_micro_irradiance(const mote_micro_options* options, const mote_receiver* receivers,
+                                           size_t count, float* irradiance);
+
+typedef struct mote_bundle_link { /* two triangles whose fronts see each other along a bundle */
+    uint32_t from, to;            /* along the direction */
+    double area;                  /* perpendicular to the direction, by the rays that link them [m^2] */
+} mote_bundle_link;
+
+/* A global ray-bundle (docs/methods/ray_bundles.md): all links along a direction, of parallel rays `spacing`
+ * [m] apart. `offset`: of the rays, in [0, 1)^2 of the spacing; uniform, areas have no bias; null: the
+ * middle. `count`: all links, of which the first `room` are written to `links`. */
+MOTE_API mote_status mote_bundle_links(const mote_triangles* mesh, const float direction[3], double spacing,
+                                       const float offset[2], mote_bundle_link* links, size_t room,
+                                       size_t* count);
 
 #ifdef __cplusplus
 }

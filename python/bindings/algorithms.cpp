@@ -1,30 +1,22 @@
 // Methods over arrays of a host: a hierarchy over its lights, epipolar sampling of its depth buffer,
 // upsampling, visibility queries.
 #include "core/scene/light_tree.h"
-#include "python/bindings/bindings.h"
+#include "python/bindings/arrays.h"
 #include "screenspace/epipolar/depth_buffer.h"
 #include "screenspace/upsampling/upsampled_picture.h"
 #include "screenspace/visibility/exact_counts.h"
+#include "session/host/host_triangles.h"
 
 namespace mote::python {
 
 namespace {
 
 using core::Rgb, core::Vec3;
-using Triple = std::array<double, 3>;
+using Corners = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Depth = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;  ///< [row][column]
-using Vectors = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Items = nb::ndarray<const std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Queries = nb::ndarray<const std::int64_t, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
 
-Vec3 vec3(const float* v) { return {v[0], v[1], v[2]}; }
-
-template <typename T, typename... Sizes>
-nb::object array_of(std::vector<T> values, Sizes... sizes) {
-    auto* kept = new std::vector<T>(std::move(values));
-    const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-    return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), {std::size_t(sizes)...}, owner));
-}
 nb::object picture_of(const std::vector<Rgb>& light, std::size_t height, std::size_t width) {
     std::vector<float> values;
     for (const Rgb& l : light) values.insert(values.end(), {l.x, l.y, l.z});
@@ -85,6 +77,46 @@ nb::tuple upsample(const Pixels& position, const Pixels& normal, const std::opti
     return nb::make_tuple(picture_of(found.light, position.shape(0), position.shape(1)), found.shaded);
 }
 
+std::vector<Vec3> rows(const Vectors& values) {
+    std::vector<Vec3> result;
+    for (std::size_t i = 0; i < values.shape(0); ++i) result.push_back(vec3(values.data() + 3 * i));
+    return result;
+}
+std::vector<std::array<std::uint32_t, 3>> rows(const Corners& values) {
+    std::vector<std::array<std::uint32_t, 3>> result;
+    for (std::size_t i = 0; i < values.shape(0); ++i) {
+        const std::uint32_t* corners = values.data() + 3 * i;
+        result.push_back({corners[0], corners[1], corners[2]});
+    }
+    return result;
+}
+
+nb::object micro_irradiance(const Vectors& corners, const Corners& triangles, const Vectors& radiance,
+                            const Vectors& position, const Vectors& normal, std::uint32_t points,
+                            std::uint32_t side, std::uint32_t passes, std::uint64_t seed) {
+    const auto mesh_corners = rows(corners);
+    const auto mesh_triangles = rows(triangles);
+    std::vector<float> values;
+    for (const Rgb& e : session::micro_irradiance({mesh_corners, mesh_triangles}, rows(radiance),
+                                                  rows(position), rows(normal), {points, side, passes, seed}))
+        values.insert(values.end(), {e.x, e.y, e.z});
+    return array_of(std::move(values), position.shape(0), 3);
+}
+
+nb::tuple bundle_links(const Vectors& corners, const Corners& triangles, const Triple& direction,
+                       double spacing, std::pair<double, double> offset) {
+    const auto mesh_corners = rows(corners);
+    const auto mesh_triangles = rows(triangles);
+    const auto found = session::bundle_links({mesh_corners, mesh_triangles}, vec3(direction), float(spacing),
+                                             {float(offset.first), float(offset.second)});
+    std::vector<std::uint32_t> pairs;
+    std::vector<double> areas;
+    for (const session::BundleLink& link : found)
+        pairs.insert(pairs.end(), {link.from, link.to}), areas.push_back(link.area);
+    return nb::make_tuple(array_of(std::move(pairs), found.size(), 2),
+                          array_of(std::move(areas), found.size()));
+}
+
 nb::object count_visible(const Items& items, std::uint32_t count, const Queries& queries) {
     const screenspace::IdPicture picture{
         int(items.shape(1)), int(items.shape(0)), {items.data(), items.size()}};
@@ -119,6 +151,8 @@ void bind_algorithms(nb::module_& m) {
     m.def("upsample", &upsample, nb::arg("position"), nb::arg("normal"), nb::arg("albedo").none(),
           nb::arg("focal_length"), nb::arg("spacing"), nb::arg("shade"));
     m.def("count_visible", &count_visible);
+    m.def("micro_irradiance", &micro_irradiance);
+    m.def("bundle_links", &bundle_links);
 }
 
 }  // namespace mote::python

@@ -37,6 +37,7 @@ struct Picture {
 std::vector<core::Rgb> colours(const Pixels& pixels);
 
 void bind_algorithms(nb::module_& m);
+void bind_host_light(nb::module_& m);
 void bind_errors(nb::module_& m);
 void bind_scenes(nb::module_& m);
 void bind_pictures(nb::module_& m);

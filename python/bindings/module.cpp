@@ -69,4 +69,5 @@ NB_MODULE(_mote, m) {
     python::bind_rendering(m);
     python::bind_viewing(m);
     python::bind_algorithms(m);
+    python::bind_host_light(m);
 }

@@ -15,7 +15,7 @@ except ImportError as problem:  # `python -m mote.cluster` needs the command alo
     def __getattr__(name):
         raise AttributeError(f"mote.{name} needs the compiled module mote._mote, which 'pip install .' builds: {_problem}")
 else:
-    from ._algorithms import LightTree, count_visible, epipolar, upsample
+    from ._algorithms import HostLight, LightTree, bundle_links, count_visible, epipolar, micro_irradiance, upsample
     from ._errors import Error
     from ._mote import version as __version__
     from ._manual import Manual, manual
@@ -27,6 +27,6 @@ else:
     from ._transform import ScalarTransform4f, Transform
     from ._view import view
 
-    __all__ = ["Error", "LightTree", "Manual", "Picture", "ScalarTransform4f", "Scene", "Transform", "compare", "count_visible",
-               "denoise", "denoise_sequence", "epipolar", "load", "load_string", "manual", "metric_definitions", "pixel_errors",
-               "render", "series_error", "ssbc", "trade", "upsample", "view"]
+    __all__ = ["Error", "HostLight", "LightTree", "Manual", "Picture", "ScalarTransform4f", "Scene", "Transform", "bundle_links",
+               "compare", "count_visible", "denoise", "denoise_sequence", "epipolar", "load", "load_string", "manual", "metric_definitions",
+               "micro_irradiance", "pixel_errors", "render", "series_error", "ssbc", "trade", "upsample", "view"]

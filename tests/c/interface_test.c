@@ -639,6 +639,99 @@ static void test_light_tree(void) {
     mote_light_tree_free(tree), mote_light_tree_free(NULL);
 }
 
+/* A closed unit cube seen from inside, as a host would trace it. */
+static int cube_hit(void* user, const mote_segment* s, mote_hit* hit) {
+    int axis, nearest = -1;
+    (void)user;
+    hit->distance = s->length;
+    for (axis = 0; axis < 3; ++axis) {
+        const float d = s->direction[axis], t = ((d > 0.0f ? 1.0f : 0.0f) - s->origin[axis]) / d;
+        if (d != 0.0f && t > 0.0f && t < hit->distance) hit->distance = t, nearest = axis;
+    }
+    if (nearest < 0) return 0;
+    memset(hit->normal, 0, sizeof hit->normal);
+    hit->normal[nearest] = 1.0f, hit->material = 0;
+    return 1;
+}
+
+/* Power ends in the walls: they receive power / (area (1 - reflectance)), of which power / area is direct. */
+static void test_host_light(void) {
+    static const float reflectance[3] = {0.5f, 0.5f, 0.5f};
+    const mote_lamp lamp = {{0.4, 0.5, 0.6}, {2.0f, 2.0f, 2.0f}};
+    const double expected = 4.0 * 3.14159265 * 2.0 / 6.0; /* by bounces [W/m^2] */
+    enum { SETS = 12, RECEIVERS = 200 };
+    mote_receiver receivers[RECEIVERS];
+    float radiance[3 * RECEIVERS];
+    double sum = 0.0, squares = 0.0, error;
+    int set, i, k;
+    mote_host_options scene;
+    mote_host_light_options options;
+    mote_host_light* light = mote_host_light_new();
+    memset(&scene, 0, sizeof scene), memset(&options, 0, sizeof options);
+    scene.struct_size = sizeof scene, options.struct_size = sizeof options;
+    scene.reflectance = reflectance, scene.material_count = 1, scene.lamps = &lamp, scene.lamp_count = 1;
+    scene.upper[0] = scene.upper[1] = scene.upper[2] = 1.0f, scene.first_hit = cube_hit;
+    options.paths = 256, options.selection = "stochastic_lightcuts";
+    CHECK(mote_host_light_reflect(light, receivers, 1, radiance) == MOTE_INVALID_ARGUMENT);
+    srand(5);
+    for (set = 0; set < SETS; ++set) {
+        double mean = 0.0;
+        options.seed = (uint64_t)set;
+        CHECK(mote_host_light_trace(light, &scene, &options) == MOTE_OK);
+        memset(receivers, 0, sizeof receivers);
+        for (i = 0; i < RECEIVERS; ++i) { /* evenly over the six walls */
+            const int axis = i % 3, upper = i / 3 % 2;
+            for (k = 0; k < 3; ++k) receivers[i].position[k] = (float)((rand() + 0.5) / (RAND_MAX + 1.0));
+            receivers[i].position[axis] = (float)upper, receivers[i].normal[axis] = upper ? -1.0f : 1.0f;
+        }
+        CHECK(mote_host_light_reflect(light, receivers, RECEIVERS - 2, radiance) == MOTE_OK);
+        for (i = 0; i < RECEIVERS - 2; ++i) mean += radiance[3 * i + 1] * 3.14159265 / 0.5 / (RECEIVERS - 2);
+        sum += mean / SETS, squares += mean * mean / SETS;
+    }
+    error = sqrt((squares - sum * sum) / (SETS - 1)); /* Student, 11 degrees of freedom, 0.1 %: 4.44 */
+    printf("host's walls: %.3f +- %.3f W/m^2 by bounces, %.3f by energy\n", sum, error, expected);
+    CHECK(fabs(sum - expected) < 4.44 * error && error < 0.05 * expected &&
+          mote_host_light_size(light) > 256);
+    options.selection = "lightcut";
+    CHECK(mote_host_light_trace(light, &scene, &options) == MOTE_INPUT_ERROR);
+    CHECK(strstr(mote_host_light_error(light), "did you mean 'lightcuts'") != NULL);
+    CHECK(mote_host_light_size(light) > 256); /* the last one that was traced stays */
+    scene.first_hit = NULL;
+    CHECK(mote_host_light_trace(light, &scene, NULL) == MOTE_INVALID_ARGUMENT);
+    CHECK(mote_host_light_trace(light, NULL, NULL) == MOTE_INVALID_ARGUMENT);
+    mote_host_light_free(light), mote_host_light_free(NULL);
+}
+
+/* A square of radiance 1 above a square: Howell's catalogue, B-3, and the area that crosses. */
+static void test_triangles(void) {
+    static const float corners[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1};
+    static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6};
+    static const float radiance[] = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1}, up[3] = {0, 0, 1};
+    const mote_receiver below = {{0.5f, 0.5f, 0.01f}, {0, 0, 1}, 0};
+    const double p = sqrt(1.25), closed_form = 4 * 0.5 / p * atan(0.5 / p);
+    mote_bundle_link links[4];
+    size_t count = 0, i;
+    double area = 0;
+    float irradiance[3];
+    mote_micro_options options;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.mesh.positions = corners, options.mesh.position_count = 8;
+    options.mesh.triangles = triangles, options.mesh.triangle_count = 4;
+    options.radiance = radiance, options.points = 8000, options.side = 32, options.passes = 4;
+    CHECK(mote_micro_irradiance(&options, &below, 1, irradiance) == MOTE_OK);
+    CHECK(irradiance[1] > 0.99 * closed_form && irradiance[1] < 1.2 * closed_form); /* discs at the edge */
+    options.radiance = NULL;
+    CHECK(mote_micro_irradiance(&options, &below, 1, irradiance) == MOTE_INVALID_ARGUMENT);
+    CHECK(mote_bundle_links(&options.mesh, up, 0.01, NULL, links, 4, &count) == MOTE_OK);
+    CHECK(count >= 2 && count <= 4); /* rays on the diagonals may meet either triangle */
+    for (i = 0; i < count; ++i) area += links[i].area;
+    CHECK(fabs(area - 1) < 0.04 && links[0].from < 2 && links[0].to >= 2);
+    CHECK(mote_bundle_links(&options.mesh, up, 0.01, NULL, NULL, 0, &count) == MOTE_OK);
+    CHECK(mote_bundle_links(&options.mesh, up, 0.0, NULL, links, 4, &count) == MOTE_INPUT_ERROR);
+    CHECK(mote_bundle_links(NULL, up, 0.01, NULL, links, 4, &count) == MOTE_INVALID_ARGUMENT);
+}
+
 /* Resident pages of this process. */
 static long resident(void) {
     long all = 0, in_memory = 0;
@@ -690,6 +783,8 @@ int main(int argc, char** argv) {
     test_light_tree();
     test_upsample();
     test_count_visible();
+    test_host_light();
+    test_triangles();
     test_leaks();
     printf("%d checks, %d failures\n", checks, failures);
     return failures > 0;

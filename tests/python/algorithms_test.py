@@ -97,5 +97,65 @@ class VisibilityTest(unittest.TestCase):
             mote.count_visible(self.items, [(2, 0, 0, 3, 2)], count=2)
 
 
+class HostLightTest(unittest.TestCase):
+    """A closed unit cube: walls receive power / (area (1 - reflectance)), of which power / area is direct."""
+
+    @staticmethod
+    def first_hit(origin, direction, length):
+        ends = [((d > 0) - o) / d if d else math.inf for o, d in zip(origin, direction)]
+        distance = min(ends)
+        axis = ends.index(distance)
+        return (distance, tuple(float(k == axis) for k in range(3)), 0) if 0 < distance < length else None
+
+    def light(self, **settings):
+        return mote.HostLight(settings.pop("first_hit", self.first_hit), reflectance=[(0.5, 0.5, 0.5)], lamps=[(0.4, 0.5, 0.6)],
+                              intensities=[(2, 2, 2)], bounds=((0, 0, 0), (1, 1, 1)), **settings)
+
+    def test_energy(self):
+        rng, means = np.random.default_rng(7), []
+        for seed in range(8):
+            light = self.light(paths=128, seed=seed, find_occluded=lambda o, d, lengths: np.zeros(len(lengths), bool))
+            axes, upper = np.arange(96) % 3, np.arange(96) // 3 % 2
+            position, normal = rng.random((96, 3)), np.zeros((96, 3))
+            position[np.arange(96), axes], normal[np.arange(96), axes] = upper, 1 - 2 * upper
+            means.append(light.reflected(position, normal).mean() * math.pi / 0.5)
+            self.assertGreater(len(light), 128)
+        error = np.std(means, ddof=1) / len(means) ** 0.5
+        expected = 4 * math.pi * 2 / 6
+        self.assertLess(abs(np.mean(means) - expected), 5.4 * error)  # Student's t, 7 degrees of freedom: 0.1 %
+        self.assertLess(error, 0.05 * expected)
+
+    def test_errors(self):
+        with self.assertRaisesRegex(mote.Error, "did you mean 'lightcuts'"):
+            self.light(selection="lightcut")
+
+        def broken(origin, direction, length):
+            raise KeyError("mine")
+        with self.assertRaises(KeyError):
+            self.light(first_hit=broken)
+        with self.assertRaises(ValueError):
+            self.light(paths=16, find_occluded=lambda o, d, lengths: [True]).reflected([(0.5, 0.5, 0)], [(0, 0, 1)])
+
+
+class TrianglesTest(unittest.TestCase):
+    corners = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    triangles = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6)]
+
+    def test_square_above_a_receiver(self):
+        p = math.sqrt(1.25)
+        closed_form = 4 * 0.5 / p * math.atan(0.5 / p)  # Howell's catalogue, B-3
+        found = mote.micro_irradiance(self.corners, self.triangles, [(0, 0, 0)] * 2 + [(1, 2, 0)] * 2, [(0.5, 0.5, 0.01)], [(0, 0, 1)],
+                                      points=8000, side=32, passes=4)
+        self.assertTrue(0.99 * closed_form < found[0, 0] < 1.2 * closed_form)  # discs of points reach beyond the edge
+        np.testing.assert_allclose(found[0], found[0, 0] * np.array([1, 2, 0]), rtol=1e-5)
+
+    def test_squares_linked(self):
+        pairs, areas = mote.bundle_links(self.corners, self.triangles, (0, 0, 1), 0.01)
+        self.assertLess(abs(areas.sum() - 1), 0.04)
+        self.assertTrue((pairs[:, 0] < 2).all() and (pairs[:, 1] >= 2).all())
+        with self.assertRaisesRegex(mote.Error, "names corner 9"):
+            mote.bundle_links(self.corners, [(0, 1, 9)], (0, 0, 1), 0.01)
+
+
 if __name__ == "__main__":
     unittest.main()

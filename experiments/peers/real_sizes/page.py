@@ -107,7 +107,7 @@ def write_page(path, facts, scenes):
     """scenes: (title, svg text, methods, notes)."""
     parts = ["<!doctype html><meta charset='utf-8'><title>mote and its peers</title><style>body{font-family:sans-serif;"
              "max-width:60em;margin:2em auto;padding:0 1em}table{border-collapse:collapse;font-size:85%}"
-             "td,th{border:1px solid #ccc;padding:.3em .5em;text-align:left}svg{max-width:46em}</style>",
+             "td,th{border:1px solid #ccc;padding:.3em .5em;text-align:left}svg{max-width:46em;height:auto}</style>",
              "<h1>mote and its peers</h1>", f"<p>{escape(LEGEND)}</p>",
              "<p>" + "<br>".join(f"{escape(k)}: {escape(str(v))}" for k, v in facts.items()) + "</p>"]
     for title, drawing, methods, notes in scenes:
