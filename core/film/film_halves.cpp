@@ -116,7 +116,8 @@ std::optional<PictureError> Film::error() const {
         blocks(relative_weights(picture, shown_variance_of_mean(1.0), width_, height_)).of_picture();
     const PictureError high = blocks(weights_of_halves(a.shown, b.shown, width_, height_)).of_picture();
     return PictureError{std::sqrt(0.5 * (low.error * low.error + high.error * high.error)),
-                        std::min(low.low, high.low), std::max(low.high, high.high)};
+                        std::min(low.low, high.low), std::max(low.high, high.high),
+                        std::max(low.rule_high, high.rule_high)};
 }
 
 }  // namespace mote::core

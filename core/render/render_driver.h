@@ -22,7 +22,8 @@ struct StopRule {
     /// that takes: ends as near to it as whole passes allow, after one at least.
     std::optional<double> seconds;
     std::optional<double> noise;  ///< Film::noise() of the finished picture, tested from 8 passes on
-    /// Upper end of the interval of Film::error() of the finished picture, tested from 8 passes on.
+    /// Upper end for rules of Film::error() of the finished picture (PictureError::rule_high), tested from 8
+    /// passes on.
     std::optional<double> error = {};
 };
 

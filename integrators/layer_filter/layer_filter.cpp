@@ -31,9 +31,9 @@ LayerOfPasses of_passes(Film& film, std::size_t layer) {
 }
 
 /// The filtered sum of layers, of which each keeps its fraction of a pixel.
-std::vector<std::vector<Rgb>> filtered_sum(const screenspace::ViewFilter& filter,
-                                           std::vector<LayerOfPasses> layers, screenspace::LayerKind kind,
-                                           screenspace::FilterQuality quality, CancelToken cancelled) {
+std::vector<std::vector<Rgb>> filtered_sum(screenspace::ViewFilter& filter, std::vector<LayerOfPasses> layers,
+                                           screenspace::LayerKind kind, screenspace::FilterQuality quality,
+                                           CancelToken cancelled) {
     std::vector<Rgb> sum(layers[0].mean.size(), Rgb(0.0f)), variance = sum;
     for (const LayerOfPasses& layer : layers)
         for (std::size_t p = 0; p < sum.size(); ++p)
@@ -144,6 +144,7 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
                 apply_to_mean(film, choice, cancelled);
         }
     }
+    filter_->release();
     filter_seconds_ += seconds;
     seconds_per_run_ = seconds / (double(layers_.size()) * (halves ? 2.0 : 1.0));
 }
@@ -180,6 +181,7 @@ void LayerFilter::apply_to_sums(Film& film, screenspace::FilterQuality quality, 
         const Stopwatch stopwatch(seconds);
         for (const Kind& kind : all) apply_to_sum(film, kind, quality, cancelled);
     }
+    filter_->release();
     filter_seconds_ += seconds;
     const double runs = double(all.size()) * (has_halves(film) ? 2.0 : 1.0);
     const double full = quality == screenspace::FilterQuality::full ? 1.0 : filter_->full_per_preview();

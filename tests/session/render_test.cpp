@@ -273,7 +273,7 @@ TEST_CASE("A limit on the error ends where the interval is below it, with or wit
     settings.threads = 2, settings.stop.error = 0.02;
     const Rendered rendered = session::render(scene, settings);
     REQUIRE(rendered.error);
-    CHECK(rendered.error->high <= 0.02);
+    CHECK(rendered.error->rule_high <= 0.02);
     CHECK(rendered.passes >= 8);
     struct Watching : session::RenderObserver {
         bool wants_previews() const override { return true; }
