@@ -21,22 +21,9 @@
 #include <vector>
 
 #include "core/scene/reverse_density.h"
+#include "integrators/bidirectional/heuristic.h"
 
 namespace mote::integrators {
-
-enum class Heuristic : std::uint8_t {
-    power,    ///< h(p) = p^2
-    balance,  ///< h(p) = p
-    none      ///< every technique counts in full: to compare them one by one
-};
-
-/// h of a ratio of densities. The largest numbers are cut off long before they overflow: what they stand
-/// beside has no weight left.
-inline double mis_term(Heuristic heuristic, double ratio) {
-    if (heuristic == Heuristic::none) return 0.0;
-    const double r = std::min(ratio, 1e50);
-    return heuristic == Heuristic::power ? r * r : r;
-}
 
 struct PathVertex {
     /// On the lens or on a light (index 0) only the position counts.
