@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/math/random.h"
-#include "integrators/upbp/merge_kernels.h"
-#include "integrators/upbp/merged_weights.h"
+#include "integrators/bidirectional/merge_kernels.h"
+#include "integrators/bidirectional/merged_weights.h"
 #include "tests/support/catch.h"
 
 using namespace mote::integrators;

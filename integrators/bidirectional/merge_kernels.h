@@ -16,6 +16,7 @@
 // with probability tau.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -37,6 +38,11 @@ struct MergeSettings {
     std::array<double, merge_count> radius{};  ///< [m]; 0: the technique is not used
     double light_subpaths = 1.0;               ///< n of a pass; each may merge with every eye subpath
     BeamLength light_beams = BeamLength::short_beam, eye_beams = BeamLength::long_beam;
+
+    bool uses(Merge technique) const { return radius[std::size_t(technique)] > 0.0; }
+    bool any() const {
+        return std::any_of(radius.begin(), radius.end(), [](double r) { return r > 0.0; });
+    }
 };
 
 /// A vertex at which subpaths may merge.

@@ -1,4 +1,4 @@
-#include "integrators/upbp/merge_kernels.h"
+#include "integrators/bidirectional/merge_kernels.h"
 
 #include <numbers>
 
