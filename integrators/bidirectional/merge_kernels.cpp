@@ -18,15 +18,15 @@ double merge_kernel(Merge technique, const MergeVertex& v, const MergeSettings& 
     if (!v.connectable || v.on_surface != (technique == Merge::surface) || !(r > 0.0)) return 0.0;
     if (!v.on_surface && !(v.sigma_t > 0.0)) return 0.0;
     switch (technique) {
-    case Merge::surface:
-        return n * pi * r * r;
-    case Merge::point_point_3d:
-        return n * (4.0 / 3.0) * pi * r * r * r * v.sigma_t;
-    case Merge::point_beam_2d:
-        return n * pi * r * r * spared(settings.eye_beams, v.tau_eye);
-    case Merge::beam_beam_1d:
-        return n * 2.0 * r * v.sine / v.sigma_t * spared(settings.light_beams, v.tau_light) *
-               spared(settings.eye_beams, v.tau_eye);
+        case Merge::surface:
+            return n * pi * r * r;
+        case Merge::point_point_3d:
+            return n * (4.0 / 3.0) * pi * r * r * r * v.sigma_t;
+        case Merge::point_beam_2d:
+            return n * pi * r * r * spared(settings.eye_beams, v.tau_eye);
+        case Merge::beam_beam_1d:
+            return n * 2.0 * r * v.sine / v.sigma_t * spared(settings.light_beams, v.tau_light) *
+                   spared(settings.eye_beams, v.tau_eye);
     }
     return 0.0;
 }

@@ -1,4 +1,4 @@
-// Effective densities of the techniques that merge a light subpath with an eye subpath (Krivanek et al. 2014,
+// Effective densities of the techniques that merge a light subpath with an eye subpath (Křivánek et al. 2014,
 // "Unifying points, beams, and paths in volumetric light transport simulation").
 //
 // A merge at x_k needs both subpaths to find x_k. With the densities of integrators/bidirectional/subpath.h,
@@ -10,8 +10,9 @@
 //   surface photon        a b n pi r^2                                      K = n pi r^2
 //   point-point 3D        (a sigma_t) (b sigma_t) n (4/3) pi r^3 / sigma_t  K = n (4/3) pi r^3 sigma_t
 //   photon, query beam 2D (a sigma_t) (b / tau') n pi r^2 / sigma_t         K = n pi r^2 / tau'
-//   beam, beam 1D         (a / tau') (b / tau') n 2 r sin / sigma_t         K = n 2 r sin / (sigma_t tau' tau')
-// A point on a beam costs no density of its distance. tau' = tau of that edge for long beams, which go on to
+//   beam, beam 1D         (a / tau') (b / tau') n 2 r sin / sigma_t         K = n 2 r sin / (sigma_t tau'
+//   tau')
+// A point on a beam costs no density of its distance. tau' = tau of that edge for long beams, which reach
 // the next surface; 1 for short ones, which are as long as the sampled distance: the point is then reached
 // with probability tau.
 #pragma once

@@ -4,7 +4,8 @@
 // integrators/bidirectional/subpath.h, and by merges at x_k, 0 < k < n - 1. With a_i and b_i the densities of
 // x_i from the light and from the camera, and p_s the density of connection (s, n - s),
 //   p_k / p_{k+1} = b_k / a_k      and     p_{merge at k} / p_{k+1} = b_k K_k      (derived)
-// so that the sum over all techniques with fewer vertices from the light than connection k + 1, in its terms, is
+// so that the sum over all techniques with fewer vertices from the light than connection k + 1, in its terms,
+// is
 //   A_k = h(b_k) sum h(K_k) + h(b_k / a_k) (c_k + A_{k-1}),   A_{-1} = 0                              (1)
 // with c_k = h of what connection k has beyond the vertices' densities. From the camera the same holds with
 // both ends exchanged; a merge at x_k belongs to one end's sum alone.

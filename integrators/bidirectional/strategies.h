@@ -60,9 +60,12 @@ class Strategies {
     template <typename Found, typename AfterStep>
     void trace_eye_path(const EyeRay& eye, const Found& found, const AfterStep& after_step);
     /// A light path that was traced before, to be joined to eye paths.
-    void take_light_path(const Subpath& path) { light_.vertices = path.vertices, light_.without = path.without; }
+    void take_light_path(const Subpath& path) {
+        light_.vertices = path.vertices, light_.without = path.without;
+    }
 
-    /// Layer of light that reaches eye vertex t - 1, `z`, after s scatterings, at which it scatters once more.
+    /// Layer of light that reaches eye vertex t - 1, `z`, after s scatterings, at which it scatters once
+    /// more.
     static Transport layer_of(std::size_t s, const PathVertex& z) {
         if (s == 0) return transport_layer(z.scatterings, z.surface_first);
         const bool surface = z.scatterings == 0 ? z.scattering.on_surface() : z.surface_first;
@@ -149,7 +152,8 @@ void Strategies<Media>::trace_light_path(core::Sampler& sampler, const Splat& sp
     if (!start_light_path(sampler, walk)) return;
     while (walk.advance()) {
         if (light_.size() == 2) finish_light_start();
-        if (settings_.limits.hide_emitters || !settings_.connections) continue;  // eye rays pass lights, connections to the lens do not
+        if (settings_.limits.hide_emitters || !settings_.connections)
+            continue;  // eye rays pass lights, connections to the lens do not
         const core::Vec2 u_lens = pinhole_ ? core::Vec2(0.5f) : sampler.next_2d();
         if (const auto joined = join_to_lens(light_.size(), u_lens)) splat(joined->first, joined->second);
     }

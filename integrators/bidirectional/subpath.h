@@ -44,11 +44,11 @@ struct PathVertex {
     bool infinite = false;  ///< a light at infinity: the start of a light path, the end of an eye path
     bool start = false;     ///< on a light, with its normal there, or zero
     core::Vec3 light_normal{0.0f};
-    core::Rgb sigma_s{0.0f};     ///< [1/m], in media where subpaths are merged
-    double sigma_t = 0.0;        ///< mean over channels [1/m], likewise
-    double point_merges = 0.0;   ///< sum of h(K) of the merges of two points
-    double beam_merges = 0.0;    ///< h(K tau) of the merge with a long query beam, tau of the edge to the eye
-    int scatterings = 0;  ///< of an eye path before this vertex, without leading mirrors and glass
+    core::Rgb sigma_s{0.0f};    ///< [1/m], in media where subpaths are merged
+    double sigma_t = 0.0;       ///< mean over channels [1/m], likewise
+    double point_merges = 0.0;  ///< sum of h(K) of the merges of two points
+    double beam_merges = 0.0;   ///< h(K tau) of the merge with a long query beam, tau of the edge to the eye
+    int scatterings = 0;        ///< of an eye path before this vertex, without leading mirrors and glass
     bool surface_first = true;
 
     /// C(x) / d^2 of a vertex seen along a unit direction from the square root of `d2` away; 1 at infinity.
@@ -73,9 +73,7 @@ struct Subpath {
 
     /// h, in terms of the vertices' densities, of the technique that connects along the edge to vertex k: 0
     /// where a delta part stands at one of its ends. `last`: k is where the path is connected.
-    double technique(std::size_t k, bool last = false) const {
-        return technique(k, vertices[k], last);
-    }
+    double technique(std::size_t k, bool last = false) const { return technique(k, vertices[k], last); }
     double technique(std::size_t k, const PathVertex& vertex, bool last) const {
         if (!connects) return 0.0;
         if (k == 0) return without;
@@ -89,8 +87,8 @@ struct Subpath {
         return vertex.point_merges + vertex.beam_merges / mis_term(heuristic, to_eye);
     }
     /// Sum over all techniques with fewer vertices from this end, in terms of the one that connects vertex k.
-    /// `reverse`, `reverse_before`: densities of vertices k and k - 1 sampled from the other end; `next_edge`:
-    /// tau of the connection, which `reverse` holds.
+    /// `reverse`, `reverse_before`: densities of vertices k and k - 1 sampled from the other end;
+    /// `next_edge`: tau of the connection, which `reverse` holds.
     double others(std::size_t k, double reverse, double reverse_before, double next_edge = 1.0) const {
         const PathVertex& v = vertices[k];
         const double before = k == 0 ? 0.0 : through(k - 1, reverse_before, v.others, v.edge);
@@ -102,7 +100,8 @@ struct Subpath {
         if (k < 2) return 0.0;
         return through(k - 2, reverse_of_second_before, vertices[k - 1].others, vertices[k - 1].edge);
     }
-    /// Eq. (1) of merged_weights.h at vertex k, where the path continued; `before`: the sum up to vertex k - 1.
+    /// Eq. (1) of merged_weights.h at vertex k, where the path continued; `before`: the sum up to vertex k
+    /// - 1.
     double through(std::size_t k, double reverse, double before, double next_edge) const {
         const PathVertex& v = vertices[k];
         return techniques_before(

@@ -18,9 +18,9 @@ struct SubpathLimits {
 
 /// A ray of the last edge up to its first surface, whether or not the path got there: a long query beam.
 struct SubpathSegment {
-    core::Ray ray;                            ///< t_max: the first surface
-    core::MediumState state;                  ///< media at its origin
-    core::Rgb throughput{0.0f};               ///< of the path there
+    core::Ray ray;                             ///< t_max: the first surface
+    core::MediumState state;                   ///< media at its origin
+    core::Rgb throughput{0.0f};                ///< of the path there
     std::vector<core::SurfaceHit> boundaries;  ///< of media along it
 };
 

@@ -41,7 +41,7 @@ class LightVertices {
 
     const PathVertex& vertex(const LightVertex& v) const { return (*paths_)[v.path].vertices[v.index]; }
     const Subpath& path(const LightVertex& v) const { return (*paths_)[v.path]; }
-    std::size_t on_surfaces() const { return on_surfaces_; }  ///< how many
+    std::size_t on_surfaces() const { return on_surfaces_; }   ///< how many
     std::size_t in_media() const { return in_discs_.size(); }  ///< how many
 
     /// Upper bound of what a vertex takes in all structures [B].

@@ -1,6 +1,7 @@
 // Light that one eye subpath finds by merging with the light subpaths of a pass.
 //
-// With y the light's vertex, z the eye's, both weights with the albedo of their collision, and w the MIS weight,
+// With y the light's vertex, z the eye's, both weights with the albedo of their collision, and w the MIS
+// weight,
 //   surface photon         y z f / (n pi r^2) w
 //   point-point 3D         y z f / (n (4/3) pi r^3 sigma_s) w            the albedo counts once
 //   photon, query beam 2D  y T tau f / (n pi r^2) w                      T: the eye path's weight at the ray
@@ -42,8 +43,9 @@ class Merges {
         if (!settings_.merging.uses(technique)) return;
         const MergeVertex at{surface, true, z.sigma_t};
         const double kernel = merge_kernel(technique, at, settings_.merging);
-        lights_.for_each_near(surface, z.scattering.position, settings_.merging.radius[std::size_t(technique)],
-                              near_, [&](const LightVertex& v) {
+        lights_.for_each_near(surface, z.scattering.position,
+                              settings_.merging.radius[std::size_t(technique)], near_,
+                              [&](const LightVertex& v) {
                                   const PathVertex& y = lights_.vertex(v);
                                   if (surface ? !same_side(y, z) : y.scattering.phase != z.scattering.phase)
                                       return;
@@ -116,8 +118,8 @@ class Merges {
         MergedVertex m;
         m.from_light = y.density, m.from_eye = z.density;
         m.connection_light = light.technique(i, y, true), m.connection_eye = eye.technique(j, z, true);
-        const double before_y = density_of_previous(y, light.vertices[i - 1], z.scattering.wo,
-                                                    core::TransportMode::power, false);
+        const double before_y =
+            density_of_previous(y, light.vertices[i - 1], z.scattering.wo, core::TransportMode::power, false);
         const double before_z = density_of_previous(z, eye.vertices[j - 1], y.scattering.wo,
                                                     core::TransportMode::radiance, false);
         m.before_light = light.through(i - 1, before_y, y.others, y.edge);

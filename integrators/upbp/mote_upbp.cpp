@@ -1,4 +1,5 @@
-// `mote_upbp`: points, beams and paths in one estimator (Krivanek et al. 2014), in homogeneous media and grids.
+// `mote_upbp`: points, beams and paths in one estimator (Křivánek et al. 2014), in homogeneous media and
+// grids.
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/register_parts.h"
 #include "integrators/upbp/upbp_settings.h"
@@ -34,7 +35,8 @@ Plan MoteUpbp::plan(const Scene& scene, const Requirements& r) const {
     if (settings_.connections)
         plan.run("connections", "as in mote_bdpt", "light that no kernel blurs");
     else
-        plan.miss("connections", "none", "bpt is false: light that only mirrors and glass send is hit, no other");
+        plan.miss("connections", "none",
+                  "bpt is false: light that only mirrors and glass send is hit, no other");
     if (settings_.surface) plan.run("surface photons", "kernel of two dimensions", "at eye vertices");
     if (settings_.point_point && r.media_scattering)
         plan.run("point-point 3D", "kernel of three dimensions", "at collisions of the eye path");
@@ -60,7 +62,8 @@ void register_mote_upbp(Registry& registry) {
     using S = UpbpSettings;
     add_type<S>(
         registry, Category::integrator, "mote_upbp",
-        "Points, beams and paths in one estimator: bidirectional paths merged with photons on surfaces and in "
+        "Points, beams and paths in one estimator: bidirectional paths merged with photons on surfaces and "
+        "in "
         "media.",
         {within(&S::limits, eye_path_rows()),
          row("bpt", &S::connections, "Connections of light paths and eye paths, as mote_bdpt has."),

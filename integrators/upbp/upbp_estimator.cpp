@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t light_path_stream = 0x75706270u;
 
 /// Sum over all connections of a pixel's light path with its eye path, and over all merges of its eye path
-/// with the light paths of every pixel, each by its MIS weight (Krivanek et al. 2014).
+/// with the light paths of every pixel, each by its MIS weight (Křivánek et al. 2014).
 template <bool Media>
 class UpbpEstimator final : public Estimator {
   public:
@@ -55,7 +55,8 @@ class UpbpEstimator final : public Estimator {
         BidirectionalSettings s;
         s.limits = settings_.limits, s.heuristic = settings_.heuristic;
         s.all_connections = settings_.all_connections, s.connections = settings_.connections;
-        const double size = double(scene_.bounds().radius()), first = settings_.radius * (size > 0.0 ? size : 1.0);
+        const double size = double(scene_.bounds().radius()),
+                     first = settings_.radius * (size > 0.0 ? size : 1.0);
         const auto set = [&](Merge technique, bool used, int dimensions) {
             const double fraction = gathering::radius_fraction(pass, settings_.alpha, dimensions);
             s.merging.radius[std::size_t(technique)] = used ? first * fraction : 0.0;
@@ -97,8 +98,8 @@ class UpbpEstimator final : public Estimator {
                    std::vector<Subpath>& paths, std::vector<Splat>& splats) {
         WalkContext walk;
         walk.cancelled = context.cancelled;
-        Strategies<Media> strategies(scene_, ends_, settings, std::uint32_t(pixels()), context.filter.radius(),
-                                     walk);
+        Strategies<Media> strategies(scene_, ends_, settings, std::uint32_t(pixels()),
+                                     context.filter.radius(), walk);
         for (int x = 0; x < options_.width; ++x) {
             const auto path = std::uint32_t(pixel_key(options_, x, y));
             Sampler sampler(options_.sampler, options_.seed, path, context.index, light_path_stream);
@@ -114,8 +115,8 @@ class UpbpEstimator final : public Estimator {
                          const std::vector<Subpath>& paths, const LightVertices& lights, PassImage& image,
                          EyeTask<Media>& task) {
         WalkContext& walk = task.walk();
-        Strategies<Media> strategies(scene_, ends_, settings, std::uint32_t(pixels()), context.filter.radius(),
-                                     walk);
+        Strategies<Media> strategies(scene_, ends_, settings, std::uint32_t(pixels()),
+                                     context.filter.radius(), walk);
         Merges<Media> merges(strategies, lights, settings, walk);
         task.for_each_pixel([&](int x, int y) {
             if (context.cancelled) return;

@@ -10,8 +10,8 @@ struct UpbpSettings {
     EyePathLimits limits;
     Heuristic heuristic = Heuristic::balance;
     bool connections = true, surface = true, point_point = true, point_beam = true;
-    double radius = 0.01;       ///< of the first pass, over the radius of the scene's bounds
-    double alpha = 2.0 / 3.0;   ///< how fast kernels shrink
+    double radius = 0.01;      ///< of the first pass, over the radius of the scene's bounds
+    double alpha = 2.0 / 3.0;  ///< how fast kernels shrink
     bool all_connections = false;
 };
 

@@ -1,5 +1,6 @@
 // MIS weights over connections and merges against brute force: the joint density of every technique is
-// multiplied up with every factor that the recursive weights leave out (sigma_t, both ends' densities, kernels).
+// multiplied up with every factor that the recursive weights leave out (sigma_t, both ends' densities,
+// kernels).
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -48,7 +49,8 @@ PathOfNumbers random_path(int n, Rng& rng) {
         const bool possible =
             s == 0 || s == n ||
             (path.vertices[std::size_t(s) - 1].connectable && path.vertices[std::size_t(s)].connectable);
-        // The light path is joined to the lens by all light paths, a light is sampled by a density of its own.
+        // The light path is joined to the lens by all light paths, a light is sampled by a density of its
+        // own.
         const double c = s == n ? 0.0 : s == n - 1 ? 37.0 : s == 1 ? 0.3 : 1.0;
         path.light_samples.push_back(possible ? c : 0.0);
     }
@@ -77,7 +79,8 @@ class BruteForce {
         }
         const bool point_light = technique != Merge::beam_beam_1d;
         const bool point_eye = technique == Merge::surface || technique == Merge::point_point_3d;
-        p *= point_light ? light(k) : beam(path_.from_light[std::size_t(k)], v.tau_light, settings_.light_beams);
+        p *= point_light ? light(k)
+                         : beam(path_.from_light[std::size_t(k)], v.tau_light, settings_.light_beams);
         p *= point_eye ? eye(k) : beam(path_.from_eye[std::size_t(k)], v.tau_eye, settings_.eye_beams);
         return p * measure(technique, r, v);
     }
@@ -100,13 +103,13 @@ class BruteForce {
     double measure(Merge technique, double r, const MergeVertex& v) const {
         constexpr double pi = std::numbers::pi;
         switch (technique) {
-        case Merge::surface:
-        case Merge::point_beam_2d:
-            return pi * r * r;
-        case Merge::point_point_3d:
-            return planted_ == Planted::dimension ? pi * r * r : 4.0 / 3.0 * pi * r * r * r;
-        case Merge::beam_beam_1d:
-            return planted_ == Planted::sine ? 2.0 * r : 2.0 * r * v.sine;
+            case Merge::surface:
+            case Merge::point_beam_2d:
+                return pi * r * r;
+            case Merge::point_point_3d:
+                return planted_ == Planted::dimension ? pi * r * r : 4.0 / 3.0 * pi * r * r * r;
+            case Merge::beam_beam_1d:
+                return planted_ == Planted::sine ? 2.0 * r : 2.0 * r * v.sine;
         }
         return 0.0;
     }
@@ -116,7 +119,7 @@ class BruteForce {
     Planted planted_;
 };
 
-/// The same weights by recursion: A_k from the light, and from the camera.
+/// Weights by recursion: A_k from the light, and from the camera.
 struct Recursive {
     Recursive(const PathOfNumbers& numbers, const MergeSettings& of_merges, Heuristic h)
         : path(numbers), settings(of_merges), heuristic(h) {
@@ -143,13 +146,9 @@ struct Recursive {
     }
     double merge(int k, Merge technique) const {
         const double kernel = merge_kernel(technique, path.vertices[std::size_t(k)], settings);
-        const MergedVertex v{path.from_light[std::size_t(k)],
-                             path.from_eye[std::size_t(k)],
-                             c(k),
-                             c(k + 1),
-                             from_light[std::size_t(k) - 1],
-                             from_eye[std::size_t(k) + 1],
-                             merges(k)};
+        const MergedVertex v{
+            path.from_light[std::size_t(k)], path.from_eye[std::size_t(k)], c(k),     c(k + 1),
+            from_light[std::size_t(k) - 1],  from_eye[std::size_t(k) + 1],  merges(k)};
         return kernel * merge_weight_over_kernel(heuristic, v, kernel);
     }
     const PathOfNumbers& path;
@@ -198,8 +197,8 @@ double largest_difference(Heuristic heuristic, Planted planted) {
             for (int i = 0; i < 20; ++i) {
                 const MergeSettings settings = settings_of(which, rng);
                 double sum = 0.0;
-                largest = std::max(largest,
-                                   difference(random_path(n, rng), settings, heuristic, planted, &sum));
+                largest =
+                    std::max(largest, difference(random_path(n, rng), settings, heuristic, planted, &sum));
                 CHECK(std::fabs(sum - 1.0) < 1e-9);  // rounding alone
             }
     return largest;
@@ -207,8 +206,7 @@ double largest_difference(Heuristic heuristic, Planted planted) {
 
 }  // namespace
 
-TEST_CASE("weights over connections and merges are those of brute force and add up to one",
-          "[upbp][mis]") {
+TEST_CASE("weights over connections and merges are those of brute force and add up to one", "[upbp][mis]") {
     for (const Heuristic heuristic : {Heuristic::balance, Heuristic::power}) {
         CHECK(largest_difference(heuristic, Planted::none) < 1e-9);  // rounding alone
         for (const Planted planted : {Planted::dimension, Planted::subpaths, Planted::sine, Planted::length,
