@@ -31,7 +31,7 @@ void check_equal(const std::string& xml, const std::string& reference, const std
     const auto scene = scene_from(xml, 16);
     const auto ours = render_statistics(*scene, *integrator_from(upbp(parameters)), {block, passes, 1});
     const auto truth = render_statistics(*scene, *integrator_from("<integrator type=\"" + reference + "\"/>"),
-                                         {8, 2 * passes, 2});
+                                         {block, 6 * passes, 2});
     CHECK(ours.non_finite == 0);
     for (const std::string& layer : truth.layers) check_same_mean(ours, layer, truth, layer);
     CHECK_FALSE(same_mean(ours.scaled(planted), "indirect", truth, "indirect", OnFailure::nothing).passed);
