@@ -16,6 +16,7 @@ void register_integrators(core::Registry& registry) {
     register_path(registry);
     register_volpath(registry);
     register_mote_bdpt(registry);
+    register_mote_upbp(registry);
     register_mote_vpl(registry);
     register_mote_vpl_ray_bundles(registry);
     register_mote_micro_rendering(registry);

@@ -17,6 +17,7 @@ void register_mote_layers(core::Registry& registry);
 void register_path(core::Registry& registry);
 void register_volpath(core::Registry& registry);
 void register_mote_bdpt(core::Registry& registry);
+void register_mote_upbp(core::Registry& registry);
 void register_mote_vpl(core::Registry& registry);
 void register_mote_vpl_ray_bundles(core::Registry& registry);
 void register_mote_micro_rendering(core::Registry& registry);

@@ -104,7 +104,7 @@ std::optional<std::pair<Contribution, Vec2>> Strategies<Media>::join_to_lens(std
     const double own =
         settings_.heuristic == Heuristic::none ? 1.0 : mis_term(settings_.heuristic, light_paths_);
     const auto weight_with = [&](double edge) {
-        return weight(light_.others(s - 1, by_camera * edge, before) / own, 0.0);
+        return weight(light_.others(s - 1, by_camera * edge, before, edge) / own, 0.0);
     };
     const float chance = worth_a_ray(weight_with(1.0));
     if (!(chance > 0.0f)) return std::nullopt;
@@ -147,8 +147,8 @@ Contribution Strategies<Media>::hit_light(std::size_t t) {
         const double by_light =
             start.of(v.geometric_cosine(direction), z.distance_squared, z.infinite) * z.edge;
         others = mis_term(settings_.heuristic, sampled / z.density) +
-                 mis_term(settings_.heuristic, start.light / z.density) * eye_.ratio(t - 2, by_light) *
-                     (eye_.technique(t - 2) + z.others);
+                 mis_term(settings_.heuristic, start.light / z.density) *
+                     eye_.through(t - 2, by_light, z.others, z.edge);
     }
     const float w = weight(0.0, others);
     return {z.weight * radiance * w, layer_of(0, t), 0, int(t), w};
@@ -222,7 +222,7 @@ bool Strategies<Media>::prepare(std::size_t s, std::size_t t, Connection& c) con
 template <bool Media>
 float Strategies<Media>::weight_of(const Connection& c, std::size_t t, double edge) const {
     if (settings_.heuristic == Heuristic::none) return 1.0f;
-    return weight(light_.others(c.s - 1, c.to_light * edge, c.before_light),
+    return weight(light_.others(c.s - 1, c.to_light * edge, c.before_light, edge),
                   eye_.others(t - 1, c.to_eye * edge, c.before_eye));
 }
 

@@ -15,6 +15,8 @@ struct BidirectionalSettings {
     Heuristic heuristic = Heuristic::power;
     bool all_connections = false;  ///< test all of them, not one sampled for each eye vertex, and whatever
                                    ///< their weight
+    bool connections = true;       ///< false: subpaths are merged only; light seen directly is found as ever
+    MergeSettings merging;         ///< none by default
     int strategies = 0;  ///< paths of up to so many edges are also sorted by their strategy; 0: none
 };
 
@@ -40,6 +42,9 @@ class Strategies {
           filter_radius_(filter_radius),
           context_(context) {
         light_.heuristic = eye_.heuristic = settings.heuristic;
+        light_.connects = eye_.connects = settings.connections;
+        light_.merging = eye_.merging = settings.merging;
+        light_.from_light = true;
     }
 
     /// Traces a light path, and joins its vertices to the lens (t = 1): splat(Contribution, film position).
@@ -48,11 +53,36 @@ class Strategies {
     /// Traces an eye path, and adds what it finds with all vertices of the last light path:
     /// found(Contribution).
     template <typename Found>
-    void trace_eye_path(const EyeRay& eye, const Found& found);
+    void trace_eye_path(const EyeRay& eye, const Found& found) {
+        trace_eye_path(eye, found, [](const SubpathWalk<Media>&, bool) {});
+    }
+    /// Also calls after_step(walk, whether there is a new vertex) after each edge.
+    template <typename Found, typename AfterStep>
+    void trace_eye_path(const EyeRay& eye, const Found& found, const AfterStep& after_step);
+    /// A light path that was traced before, to be joined to eye paths.
+    void take_light_path(const Subpath& path) {
+        light_.vertices = path.vertices, light_.without = path.without;
+    }
+
+    /// Layer of light that reaches eye vertex t - 1, `z`, after s scatterings, at which it scatters once
+    /// more.
+    static Transport layer_of(std::size_t s, const PathVertex& z) {
+        if (s == 0) return transport_layer(z.scatterings, z.surface_first);
+        const bool surface = z.scatterings == 0 ? z.scattering.on_surface() : z.surface_first;
+        return transport_layer(z.scatterings + int(s), surface);
+    }
+    /// Paths of s + t vertices are not too long.
+    bool allowed(std::size_t s, std::size_t t) const {
+        return settings_.limits.max_depth < 0 || int(s + t) - 1 <= settings_.limits.max_depth;
+    }
 
     // Valid within `splat` and `found`:
     const Subpath& light_path() const { return light_; }
     const Subpath& eye_path() const { return eye_; }
+    /// PathVertex::connection of the first eye vertex: all light paths are joined to the lens.
+    double lens_connection() const {
+        return settings_.limits.hide_emitters ? 0.0 : mis_term(settings_.heuristic, light_paths_);
+    }
     const LightPoint& light_point() const { return light_point_; }  ///< that was sampled, or hit
     const LightPoint& light_start() const { return light_start_; }  ///< of the light path
     const core::Vec3& lens_point() const { return lens_point_; }    ///< that a light path is joined to
@@ -82,16 +112,7 @@ class Strategies {
     static float weight(double fewer_from_light, double fewer_from_eye) {
         return float(1.0 / (1.0 + fewer_from_light + fewer_from_eye));
     }
-    bool allowed(std::size_t s, std::size_t t) const {
-        return settings_.limits.max_depth < 0 || int(s + t) - 1 <= settings_.limits.max_depth;
-    }
-    /// Layer of light that reaches eye vertex t - 1 after s scatterings, at which it scatters once more.
-    Transport layer_of(std::size_t s, std::size_t t) const {
-        const PathVertex& z = eye_.vertices[t - 1];
-        if (s == 0) return transport_layer(z.scatterings, z.surface_first);
-        const bool surface = z.scatterings == 0 ? z.scattering.on_surface() : z.surface_first;
-        return transport_layer(z.scatterings + int(s), surface);
-    }
+    Transport layer_of(std::size_t s, std::size_t t) const { return layer_of(s, eye_.vertices[t - 1]); }
     bool wanted(std::size_t s, std::size_t t) const { return settings_.limits.wanted[layer_of(s, t)]; }
     /// The chance with which a ray is spent on what other techniques find better, by its weight (without the
     /// tau of the edge itself); 0: not this time.
@@ -131,15 +152,16 @@ void Strategies<Media>::trace_light_path(core::Sampler& sampler, const Splat& sp
     if (!start_light_path(sampler, walk)) return;
     while (walk.advance()) {
         if (light_.size() == 2) finish_light_start();
-        if (settings_.limits.hide_emitters) continue;  // eye rays pass lights, connections to the lens do not
+        if (settings_.limits.hide_emitters || !settings_.connections)
+            continue;  // eye rays pass lights, connections to the lens do not
         const core::Vec2 u_lens = pinhole_ ? core::Vec2(0.5f) : sampler.next_2d();
         if (const auto joined = join_to_lens(light_.size(), u_lens)) splat(joined->first, joined->second);
     }
 }
 
 template <bool Media>
-template <typename Found>
-void Strategies<Media>::trace_eye_path(const EyeRay& eye, const Found& found) {
+template <typename Found, typename AfterStep>
+void Strategies<Media>::trace_eye_path(const EyeRay& eye, const Found& found, const AfterStep& after_step) {
     eye_.vertices.assign(1, {});
     eye_.vertices[0].scattering.position = eye.ray.origin;
     core::PathWeights weights;
@@ -165,15 +187,15 @@ void Strategies<Media>::trace_eye_path(const EyeRay& eye, const Found& found) {
         // That of media is found by no other technique.
         if (Media && !core::is_black(walk.emitted()))
             found(Contribution{walk.emitted(), walk.emission_layer(), 0, int(eye_.size()) + !continues});
+        if (continues && eye_.size() == 2) eye_.vertices[1].connection = lens_connection();
+        after_step(walk, continues);
         if (!continues) return;
         const std::size_t t = eye_.size();
-        if (t == 2)
-            eye_.vertices[1].connection =
-                limits.hide_emitters ? 0.0 : mis_term(settings_.heuristic, light_paths_);
-        if (wanted(0, t)) found(hit_light(t));
+        // No merge finds what only mirrors and glass reflect.
+        if (wanted(0, t) && (settings_.connections || last.scatterings == 0)) found(hit_light(t));
         if (last.infinite) return;
         const core::Vec2 choice = sampler.next_2d(), u = sampler.next_2d();
-        if (!last.scattering.connectable()) continue;
+        if (!last.scattering.connectable() || !settings_.connections) continue;
         if (allowed(1, t) && wanted(1, t)) found(draw_light(t, choice.x, u));
         connect(t, found);
     }

@@ -8,8 +8,11 @@ using namespace core;
 
 double density_of_previous(const Subpath& path, std::size_t k, const Vec3& from, TransportMode mode,
                            bool delta) {
-    const PathVertex& vertex = path.vertices[k];
-    const PathVertex& previous = path.vertices[k - 1];
+    return density_of_previous(path.vertices[k], path.vertices[k - 1], from, mode, delta);
+}
+
+double density_of_previous(const PathVertex& vertex, const PathVertex& previous, const Vec3& from,
+                           TransportMode mode, bool delta) {
     const double pdf = delta ? 1.0 : double(reverse_pdf_solid_angle(vertex.scattering, from, mode));
     return pdf * previous.area_measure(vertex.scattering.wo, vertex.distance_squared) * vertex.edge;
 }

@@ -15,28 +15,17 @@
 //   p_w(w) C(x) / d^2 tau(edge)      [1/m^2; a collision has C = 1 and leaves its sigma_t out]
 // with tau from the optical depth of the edge by marching: the same from both ends, never an estimate. What
 // is left out (sigma_t, roulette, panes that let a path pass by chance) is alike in all techniques.
+//
+// Where subpaths are also merged (`merging`), every sum holds those techniques as well (merged_weights.h).
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "core/scene/reverse_density.h"
+#include "integrators/bidirectional/merge_kernels.h"
+#include "integrators/bidirectional/merged_weights.h"
 
 namespace mote::integrators {
-
-enum class Heuristic : std::uint8_t {
-    power,    ///< h(p) = p^2
-    balance,  ///< h(p) = p
-    none      ///< every technique counts in full: to compare them one by one
-};
-
-/// h of a ratio of densities. The largest numbers are cut off long before they overflow: what they stand
-/// beside has no weight left.
-inline double mis_term(Heuristic heuristic, double ratio) {
-    if (heuristic == Heuristic::none) return 0.0;
-    const double r = std::min(ratio, 1e50);
-    return heuristic == Heuristic::power ? r * r : r;
-}
 
 struct PathVertex {
     /// On the lens or on a light (index 0) only the position counts.
@@ -55,7 +44,11 @@ struct PathVertex {
     bool infinite = false;  ///< a light at infinity: the start of a light path, the end of an eye path
     bool start = false;     ///< on a light, with its normal there, or zero
     core::Vec3 light_normal{0.0f};
-    int scatterings = 0;  ///< of an eye path before this vertex, without leading mirrors and glass
+    core::Rgb sigma_s{0.0f};    ///< [1/m], in media where subpaths are merged
+    double sigma_t = 0.0;       ///< mean over channels [1/m], likewise
+    double point_merges = 0.0;  ///< sum of h(K) of the merges of two points
+    double beam_merges = 0.0;   ///< h(K tau) of the merge with a long query beam, tau of the edge to the eye
+    int scatterings = 0;        ///< of an eye path before this vertex, without leading mirrors and glass
     bool surface_first = true;
 
     /// C(x) / d^2 of a vertex seen along a unit direction from the square root of `d2` away; 1 at infinity.
@@ -72,32 +65,47 @@ struct Subpath {
     Heuristic heuristic = Heuristic::power;
     /// h of the technique that takes no vertex from this end: of a light, 1 if it can be hit.
     double without = 0.0;
+    bool from_light = false;
+    bool connects = true;   ///< false: subpaths are merged only
+    MergeSettings merging;  ///< none by default
 
     std::size_t size() const { return vertices.size(); }
 
     /// h, in terms of the vertices' densities, of the technique that connects along the edge to vertex k: 0
     /// where a delta part stands at one of its ends. `last`: k is where the path is connected.
-    double technique(std::size_t k, bool last = false) const {
+    double technique(std::size_t k, bool last = false) const { return technique(k, vertices[k], last); }
+    double technique(std::size_t k, const PathVertex& vertex, bool last) const {
+        if (!connects) return 0.0;
         if (k == 0) return without;
-        if ((k >= 2 && vertices[k - 1].delta) || (!last && vertices[k].delta)) return 0.0;
-        return vertices[k].connection;
+        if ((k >= 2 && vertices[k - 1].delta) || (!last && vertex.delta)) return 0.0;
+        return vertex.connection;
     }
-    double ratio(std::size_t k, double reverse) const {
-        return mis_term(heuristic, vertices[k].density > 0.0 ? reverse / vertices[k].density : 0.0);
+    /// Sum of h(K) of the merges at a vertex; `next_edge`: tau of the edge after it.
+    double merges(const PathVertex& vertex, double next_edge) const {
+        const double to_eye = from_light ? next_edge : vertex.edge;
+        if (!(vertex.beam_merges > 0.0)) return vertex.point_merges;
+        return vertex.point_merges + vertex.beam_merges / mis_term(heuristic, to_eye);
     }
     /// Sum over all techniques with fewer vertices from this end, in terms of the one that connects vertex k.
-    /// `reverse`, `reverse_before`: densities of vertices k and k - 1 sampled from the other end.
-    double others(std::size_t k, double reverse, double reverse_before) const {
-        const double r = ratio(k, reverse);
-        if (k == 0) return r * without;
-        return std::min(1e200, r * (technique(k, true) +
-                                    ratio(k - 1, reverse_before) * (technique(k - 1) + vertices[k].others)));
+    /// `reverse`, `reverse_before`: densities of vertices k and k - 1 sampled from the other end;
+    /// `next_edge`: tau of the connection, which `reverse` holds.
+    double others(std::size_t k, double reverse, double reverse_before, double next_edge = 1.0) const {
+        const PathVertex& v = vertices[k];
+        const double before = k == 0 ? 0.0 : through(k - 1, reverse_before, v.others, v.edge);
+        return techniques_before(heuristic, {v.density, reverse, technique(k, true), merges(v, next_edge)},
+                                 before);
     }
     /// Terms of it that do not depend on how the path continues, once vertex k is made.
     double others_before(std::size_t k, double reverse_of_second_before) const {
         if (k < 2) return 0.0;
-        return std::min(1e200,
-                        ratio(k - 2, reverse_of_second_before) * (technique(k - 2) + vertices[k - 1].others));
+        return through(k - 2, reverse_of_second_before, vertices[k - 1].others, vertices[k - 1].edge);
+    }
+    /// Eq. (1) of merged_weights.h at vertex k, where the path continued; `before`: the sum up to vertex k
+    /// - 1.
+    double through(std::size_t k, double reverse, double before, double next_edge) const {
+        const PathVertex& v = vertices[k];
+        return techniques_before(
+            heuristic, {v.density, reverse, technique(k), v.delta ? 0.0 : merges(v, next_edge)}, before);
     }
 };
 
@@ -105,6 +113,9 @@ struct Subpath {
 /// direction `from`. `mode` is that of the subpath itself; `delta`: k is passed by a delta part, whose own
 /// density is left out at both ends.
 double density_of_previous(const Subpath& path, std::size_t k, const core::Vec3& from,
+                           core::TransportMode mode, bool delta);
+/// Likewise, of `previous`, from a vertex that need not be part of the subpath.
+double density_of_previous(const PathVertex& vertex, const PathVertex& previous, const core::Vec3& from,
                            core::TransportMode mode, bool delta);
 
 /// tau of the segment for weights: exp(-optical depth), marched in steps of 16 voxels, mean over channels.

@@ -1,6 +1,8 @@
 // Walk of a subpath, vertex by vertex: the same from both ends.
 #pragma once
 
+#include <span>
+
 #include "core/math/sampler.h"
 #include "core/scene/russian_roulette.h"
 #include "integrators/bidirectional/subpath.h"
@@ -12,6 +14,14 @@ struct SubpathLimits {
     int max_vertices = -1;       ///< after the first; -1: no limit
     int rr_depth = 5;            ///< Russian roulette after this many of them
     bool passes_lights = false;  ///< the first edge continues behind area lights, and sees no environment
+};
+
+/// A ray of the last edge up to its first surface, whether or not the path got there: a long query beam.
+struct SubpathSegment {
+    core::Ray ray;                             ///< t_max: the first surface
+    core::MediumState state;                   ///< media at its origin
+    core::Rgb throughput{0.0f};                ///< of the path there
+    std::vector<core::SurfaceHit> boundaries;  ///< of media along it
 };
 
 template <bool Media>
@@ -39,11 +49,20 @@ class SubpathWalk {
     const core::Rgb& emitted() const { return emitted_; }
     Transport emission_layer() const { return transport_layer(scatterings_, surface_first_); }
 
+    /// Rays of the last edge, also where no vertex was made; kept where beams are merged. More than one where
+    /// the first edge passes lights.
+    std::span<const SubpathSegment> segments() const { return segments_; }
+    /// The vertex that the path would have had at `photon`, a vertex of a light subpath beside the segment.
+    /// `connection`: PathVertex::connection.
+    PathVertex vertex_beside(const SubpathSegment& segment, float t, const PathVertex& photon,
+                             double connection) const;
+
   private:
     bool scatter();
     bool survives(std::size_t vertex);
     core::WalkEvent go();
     void append(const core::WalkEvent& event, const core::MediumState& start);
+    void set_merges(PathVertex& vertex, const core::WalkEvent& event) const;
     core::Rgb channel_throughput() const {
         return Media ? weights_.throughput / core::average(weights_.unidirectional) : weights_.throughput;
     }
@@ -58,6 +77,8 @@ class SubpathWalk {
     core::PathWeights weights_;
     core::MediumState state_;
     core::Rgb emitted_{0.0f}, first_{0.0f};
+    std::vector<SubpathSegment> segments_;
+    std::size_t edge_ = 0;  ///< index of the vertex at the end of the last edge
     double density_ = 0.0;
     float eta_ = 1.0f;
     bool parallel_ = false;

@@ -21,7 +21,7 @@ from pathlib import Path
 import mitsuba as mi
 
 TYPES = ("mote_bdpt", "mote_epipolar", "mote_layers", "mote_micro_rendering", "mote_path", "mote_photon_map",
-         "mote_ray_bundles", "mote_ray_lights", "mote_single_scattering", "mote_volpath", "mote_vpl", "mote_vpl_ray_bundles", "mote_vsl")
+         "mote_ray_bundles", "mote_ray_lights", "mote_single_scattering", "mote_upbp", "mote_volpath", "mote_vpl", "mote_vpl_ray_bundles", "mote_vsl")
 RENAMED = {"mote_path": "path", "mote_volpath": "volpath"}  # Mitsuba has its own of these names
 PATHS = ("filename",)
 # Objects that integrators of mote hold and Mitsuba has no word for. Its parser sees each as an integrator

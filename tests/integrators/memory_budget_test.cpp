@@ -49,6 +49,7 @@ TEST_CASE("Methods refuse what exceeds the budget, and name it", "[memory]") {
         {"mote_vpl_ray_bundles", many, "the virtual point lights of 40000 light paths"},
         {"mote_ray_lights", many, "the ray lights of 40000 light paths", true},
         {"mote_photon_map", number("photon_paths", 40000), "the photons of 40000 light paths"},
+        {"mote_upbp", "", "the vertices of 16 light subpaths"},
         {"mote_vpl", R"(<selection type="lightcuts"/>)", "selecting from "},
         {"mote_vpl", R"(<visibility type="shadow_map"/>)", " shadow map(s) of ", true},
         {"mote_vpl", R"(<visibility type="imperfect_shadow_map"/>)", " imperfect shadow maps of "},

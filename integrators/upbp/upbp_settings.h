@@ -1,0 +1,23 @@
+// Settings of `mote_upbp`.
+#pragma once
+
+#include "core/render/integrator.h"
+#include "integrators/bidirectional/strategies.h"
+
+namespace mote::integrators {
+
+struct UpbpSettings {
+    EyePathLimits limits;
+    Heuristic heuristic = Heuristic::balance;
+    bool connections = true, surface = true, point_point = true, point_beam = true;
+    double radius = 0.01;      ///< of the first pass, over the radius of the scene's bounds
+    double alpha = 2.0 / 3.0;  ///< how fast kernels shrink
+    bool all_connections = false;
+};
+
+/// Passes of `mote_upbp`: a light subpath and an eye subpath for each pixel.
+std::unique_ptr<core::Estimator> make_upbp_estimator(const core::Scene& scene,
+                                                     const core::RenderOptions& options,
+                                                     const UpbpSettings& settings);
+
+}  // namespace mote::integrators

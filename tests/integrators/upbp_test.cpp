@@ -1,0 +1,111 @@
+// mote_upbp has the mean of the path tracers, layer by layer, with all techniques and with merges alone; and
+// light that nothing absorbs fills a furnace evenly. Kernels are so small here that their bias is far below
+// the noise.
+#include <fmt/format.h>
+
+#include "tests/integrators/test_scenes.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace mote;
+using namespace mote::tests;
+
+namespace {
+
+const std::string merges_alone = R"(<boolean name="bpt" value="false"/>)";
+const std::string beams_alone = merges_alone + R"(<boolean name="pp3d" value="false"/>)";
+const std::string points_alone = merges_alone + R"(<boolean name="pb2d" value="false"/>)";
+
+std::string upbp(const std::string& parameters) {
+    return R"(<integrator type="mote_upbp">)" + parameters + "</integrator>";
+}
+
+/// Merges alone are so few in a block that their mean is far from normal: there the image is one block.
+constexpr int whole_image = 16;
+
+/// Every layer against a path tracer, and the same test against ours times `planted`.
+void check_equal(const std::string& xml, const std::string& reference, const std::string& parameters,
+                 double planted, int block = 8) {
+    constexpr std::uint32_t passes = 400;
+    const auto scene = scene_from(xml, 16);
+    const auto ours = render_statistics(*scene, *integrator_from(upbp(parameters)), {block, passes, 1});
+    const auto truth = render_statistics(*scene, *integrator_from("<integrator type=\"" + reference + "\"/>"),
+                                         {block, 6 * passes, 2});
+    CHECK(ours.non_finite == 0);
+    for (const std::string& layer : truth.layers) check_same_mean(ours, layer, truth, layer);
+    CHECK_FALSE(same_mean(ours.scaled(planted), "indirect", truth, "indirect", OnFailure::nothing).passed);
+}
+
+std::string forward(double g) {
+    return fmt::format(R"(<phase type="hg"><float name="g" value="{}"/></phase>)", g);
+}
+
+}  // namespace
+
+TEST_CASE("points, beams and paths have the mean of path", "[upbp][equality]") {
+    SECTION("all techniques") { check_equal(box(grey, ""), "path", "", 1.06); }
+    SECTION("power heuristic") {
+        check_equal(box(mixed, ""), "path", R"(<string name="heuristic" value="power"/>)", 1.06);
+    }
+    SECTION("surface photons alone") { check_equal(box(grey, ""), "path", merges_alone, 1.25, whole_image); }
+    SECTION("holes, bent normals") { check_equal(leafy_box(""), "path", "", 1.1); }
+}
+
+TEST_CASE("points, beams and paths have the mean of volpath", "[upbp][equality]") {
+    SECTION("coloured fog, all techniques") {
+        for (const double g : {-0.8, 0.0, 0.8})
+            check_equal(box(grey, fog("0.6, 0.9, 1.2", forward(g))), "volpath", "", 1.1);
+    }
+    SECTION("coloured fog, beams alone") {
+        for (const double g : {-0.8, 0.8})
+            check_equal(box(grey, fog("0.6, 0.9, 1.2", forward(g))), "volpath", beams_alone, 1.3,
+                        whole_image);
+    }
+    SECTION("coloured fog, points alone") {
+        check_equal(box(grey, fog("0.6, 0.9, 1.2", forward(0.6))), "volpath", points_alone, 1.3, whole_image);
+    }
+    SECTION("smoke") {
+        TemporaryFolder folder;
+        const std::string smoke = box(grey, smoke_medium(folder.file("smoke.vol")));
+        check_equal(smoke, "volpath", "", 1.1);
+        check_equal(smoke, "volpath", beams_alone, 1.3, whole_image);
+        check_equal(smoke, "volpath", merges_alone, 1.3, whole_image);
+    }
+}
+
+TEST_CASE("nothing is lost in a furnace of points, beams and paths", "[upbp][furnace]") {
+    const std::string xml = R"(<scene version="3.0.0"><shape type="cube"><transform name="to_world">
+        <scale value="0.9"/></transform><bsdf type="null"/><medium type="homogeneous" name="interior">
+        <rgb name="sigma_t" value="0.5, 2, 8"/><rgb name="albedo" value="1"/></medium></shape>
+        <emitter type="constant"><rgb name="radiance" value="1"/></emitter>
+        <sensor type="perspective"><float name="fov" value="40"/><transform name="to_world">
+        <lookat origin="0, 0, 3.6" target="0, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)";
+    for (const char* heuristic : {"power", "balance"}) {
+        INFO(heuristic);
+        const auto r = render_statistics(
+            *scene_from(xml, 8),
+            *integrator_from(upbp(fmt::format(R"(<string name="heuristic" value="{}"/>)", heuristic))),
+            {4, 400, 3});
+        CHECK(r.non_finite == 0);
+        check_mean_is(r, "beauty", 1.0, {1.05});
+    }
+}
+
+TEST_CASE("kernels without a size, or larger than the scene, leave finite light", "[upbp][extremes]") {
+    const std::string dense = box(grey, fog("1e4", "")), thin = box(grey, fog("1e-6", ""));
+    for (const std::string& xml : {dense, thin})
+        for (const char* radius : {"0", "100"}) {
+            INFO(radius);
+            const auto r = render_statistics(
+                *scene_from(xml, 4),
+                *integrator_from(upbp(fmt::format(
+                    R"(<float name="radius" value="{}"/><integer name="max_depth" value="8"/>)", radius))),
+                {4, 4, 3});
+            CHECK(r.non_finite == 0);
+        }
+    SECTION("without a size it is bidirectional path tracing") {
+        check_equal(box(grey, fog("0.6, 0.9, 1.2", "")), "volpath", R"(<float name="radius" value="0"/>)",
+                    1.1);
+    }
+}
