@@ -13,7 +13,6 @@ from pathlib import Path
 SCENES = ("smoke_room", "smoke room"), ("cornell_box", "Cornell box"), ("fog_grille", "fog"), ("cloud", "cloud"), ("atrium", "atrium"), ("city", "city")
 TIMED = {"mote layers": "`mote_layers`", "mote path tracer + OIDN": "path tracer", "Mitsuba + OIDN": "Mitsuba",
          "Cycles + OIDN": "Cycles", "Cycles, guided + OIDN": "guided", "mote path tracer": "path tracer, not denoised"}
-LAST = "mote layers", "mote path tracer + OIDN", "Cycles + OIDN"
 README = {"mote layers": "`mote_layers`", "mote path tracer + OIDN": "`volpath` and OpenImageDenoise", "mote path tracer": "`volpath`",
           "mote VPL": "`mote_vpl`, bounded", "Mitsuba + OIDN": "Mitsuba 3 and OpenImageDenoise",
           "Cycles + OIDN": "Cycles and OpenImageDenoise"}
@@ -54,20 +53,6 @@ def times(seconds, target):
     print("\n".join([*checks, "-->"]))
 
 
-def last_images(measured):
-    checks = []
-    for name, title in SCENES:
-        cells = []
-        checks.append(f"<!-- docs/gallery/trade/peers/{name}.csv")
-        for method in LAST:
-            last = measured[name][method][-1]
-            cells.append(f"{last['wall_s']:.1f} | {percent(last['error'], last['error_se'])}")
-            checks.append(f"{cells[-1]} = method: {method}, passes: {last['passes']}; wall_s; error; error_se")
-        checks.append("-->")
-        print(f"| {title} |", " | ".join(cells), "|")
-    print("\n".join(checks))
-
-
 def readme(runs):
     checks = []
     for method, label in README.items():
@@ -81,12 +66,10 @@ def readme(runs):
 def main():
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/gallery/trade")
     seconds = seconds_of((folder / "peers.html").read_text(encoding="utf-8"))
-    measured = {name: runs_of(folder / "peers" / f"{name}.csv") for name, _ in SCENES}
     for target in ("5", "2.5"):
         if target in seconds["cloud"]["mote layers"]:
             times(seconds, target)
-    last_images(measured)
-    readme(measured["smoke_room"])
+    readme(runs_of(folder / "peers" / "smoke_room.csv"))
 
 
 if __name__ == "__main__":
