@@ -18,7 +18,10 @@ const ParameterList<GuidingSettings>& guiding_rows() {
         row("guiding_leaf_samples", &S::leaf_samples, above(0),
             "A cell of the field is split once it has received more samples."),
         row("guiding_memory", &S::memory, above(0, "MiB"),
-            "Largest size of the field; beyond it no cell is split.")};
+            "Largest size of the field; beyond it no cell is split."),
+        row("guiding_vertices", &S::vertices,
+            "Guided paths scatter in media where they expect light, and end where they expect little; false: "
+            "directions alone are guided.")};
     return list;
 }
 

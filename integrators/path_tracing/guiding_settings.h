@@ -8,7 +8,7 @@
 
 namespace mote::integrators {
 
-/// Directions of paths from a field of incident radiance that is learned first (guided_paths.h).
+/// Paths guided by light that is learned first (guided_paths.h).
 enum class Guiding : std::uint8_t { off, automatic, on };
 
 struct GuidingSettings {
@@ -16,7 +16,8 @@ struct GuidingSettings {
     int passes = 31;               ///< of training
     int paths = 65536;             ///< of a training pass
     double leaf_samples = 8000.0;  ///< a leaf of the field with more is split
-    double memory = 64.0;          ///< of the field [MiB]
+    double memory = 64.0;          ///< of the fields [MiB]
+    bool vertices = true;          ///< vertices in media and Russian roulette, besides directions
 };
 
 const core::ParameterList<GuidingSettings>& guiding_rows();
