@@ -52,7 +52,7 @@ class EyePacket {
           settings_(settings),
           walk_(walk),
           chooses_(Media && settings.guide.candidates() > 0),
-          candidates_((settings.guide.candidates() + 3) / 4) {}  // media leave four times as many
+          candidates_(settings.guide.candidates()) {}
 
     void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];

@@ -156,6 +156,7 @@ class EyePath {
     core::MediumState& state() { return state_; }      ///< media on the side where the path is
     core::PathWeights& weights() { return weights_; }  ///< of the path so far
     core::Sampler& sampler() { return sampler_; }      ///< of the path, for what is sampled at the vertex
+    const lights::VmfMixture& guided() const { return guided_; }  ///< directions of the guide at the vertex
     /// The weight of light that reaches the path's end.
     core::Rgb throughput() const { return lights::throughput_of<Media>(weights_); }
     /// The length of hidden lights' part of the first segment, which ray() no longer holds [m].

@@ -19,7 +19,10 @@ class PathEstimator final : public Estimator {
         : scene_(scene), settings_(settings), loop_(scene, options) {
         settings_.limits.wanted = options.cells;
         if (settings_.guiding.mode != Guiding::off) train(options);
-        if (!Media && !guide_ && WavefrontScene::suits(scene, settings_))
+        if (Media || !WavefrontScene::suits(scene, settings_)) return;
+        if (guide_)
+            wavefront_.emplace(scene, settings_.limits, *guide_);
+        else
             wavefront_.emplace(scene, settings_.limits);
     }
 

@@ -29,10 +29,16 @@ class PathRecorder final : public PathObserver<Media> {
         if (!(w.light.x > 0.0f)) return;                                              // a delta scattering
         if (!(inverse_distance >= 0.0f) || !std::isfinite(inverse_distance)) return;  // it went nowhere
         const float inverse_pdf = w.light.x / (Media ? w.unidirectional.x : 1.0f);
-        path.arriving.push_back({{left.position, segment.ray.direction, inverse_pdf, inverse_distance},
-                                 lights::throughput_of<Media>(w),
-                                 path.found,
-                                 left.on_surface()});
+        lights::GuidingSample sample{left.position, segment.ray.direction, inverse_pdf, inverse_distance};
+        if (const lights::VmfMixture& lobes = lane.path->guided(); !lobes.empty) {
+            sample.guide = lobes.pdf_solid_angle(sample.direction) * inverse_pdf;
+            sample.own = std::max(0.0f, 1.0f - lobes.probability * sample.guide) / (1.0f - lobes.probability);
+            // `weight` will be the radiance over the density: this is f cos alone.
+            sample.scattered =
+                core::average(left.eval_cos(sample.direction, core::TransportMode::radiance));
+        }
+        path.arriving.push_back(
+            {sample, lights::throughput_of<Media>(w), path.found, left.on_surface()});
         path.left_by_record = true;
     }
     void on_arrival(int i, const Lane& lane) override {
