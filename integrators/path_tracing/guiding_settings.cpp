@@ -11,8 +11,8 @@ const ParameterList<GuidingSettings>& guiding_rows() {
     static const ParameterList<S> list{
         row("guiding", &S::mode,
             {{"off", Guiding::off}, {"automatic", Guiding::automatic}, {"on", Guiding::on}},
-            "Directions of paths also from a field of incident radiance, learned before the first pass; "
-            "automatic: where trial passes find less noise for the same work."),
+            "Paths guided by light that is learned before the first pass; automatic: as far as trial passes "
+            "find less noise for the same work."),
         row("guiding_passes", &S::passes, at_least(1), "Training passes of guided paths."),
         row("guiding_paths", &S::paths, at_least(16), "Paths of a training pass."),
         row("guiding_leaf_samples", &S::leaf_samples, above(0),
@@ -31,10 +31,11 @@ void plan_guiding(Plan& plan, const GuidingSettings& s) {
     else
         plan.run(
             "guiding",
-            fmt::format("{} training passes of {} paths before the first pass, none of them in the picture",
-                        s.passes, s.paths),
+            fmt::format("{}; {} training passes of {} paths before the first pass, none of them in the picture",
+                        s.vertices ? "directions, vertices in media, roulette" : "directions", s.passes,
+                        s.paths),
             s.mode == Guiding::on ? "requested"
-                                  : "kept where trial passes find less noise for the same work");
+                                  : "as far as trial passes find less noise for the same work");
 }
 
 }  // namespace mote::integrators
