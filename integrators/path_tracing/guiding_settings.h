@@ -5,6 +5,7 @@
 
 #include "core/parameters/add_type.h"
 #include "core/render/plan.h"
+#include "core/scene/requirements.h"
 
 namespace mote::integrators {
 
@@ -22,7 +23,8 @@ struct GuidingSettings {
 
 const core::ParameterList<GuidingSettings>& guiding_rows();
 
-/// Says what guides paths, and when.
-void plan_guiding(core::Plan& plan, const GuidingSettings& settings);
+/// Says what guides paths, and when. `media`: paths see them.
+void plan_guiding(core::Plan& plan, const GuidingSettings& settings, const core::Requirements& requirements,
+                  bool media);
 
 }  // namespace mote::integrators
