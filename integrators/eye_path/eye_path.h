@@ -96,9 +96,9 @@ class EyePath {
             context, sum, on_segment);
     }
 
-    /// advance() where the guide chooses the next vertex (ScatteringGuide::candidates()): the path reaches the
-    /// end of the segment with certainty, weighted by its transmittance, counts the light there, and continues
-    /// at the surface or at one of the candidates that media leave at `points`.
+    /// advance() where the guide chooses the next vertex (ScatteringGuide::candidates()): the path reaches
+    /// the end of the segment with certainty, weighted by its transmittance, counts the light there, and
+    /// continues at the surface or at one of the candidates that media leave at `points`.
     template <typename OnSegment>
     bool advance_by_choice(core::WalkContext& context, TransportSum& sum, core::ScatteringPoints& points,
                            const OnSegment& on_segment);
@@ -195,9 +195,7 @@ class EyePath {
     void find_light(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
                     const OnSegment& on_segment);
     bool make_next_vertex(const core::WalkEvent& event);
-    bool has_ended() const {
-        return depth_ == limits_.max_depth || scatterings_ == limits_.max_scatterings;
-    }
+    bool has_ended() const { return depth_ == limits_.max_depth || scatterings_ == limits_.max_scatterings; }
     void choose_vertex(const core::ScatteringPoints& points, core::WalkEvent& event, float u);
     void expect_radiance();
     bool survives_roulette(core::WalkContext& context);
@@ -219,7 +217,7 @@ class EyePath {
     lights::VmfMixture guided_;          ///< directions of the guide at the vertex
     lights::ExpectedRadiance expected_;  ///< by the guide, behind the vertex
     float expected_of_path_ = 0.0f;      ///< by the guide, at the first vertex that light is joined to
-    core::Vec2 choices_{0.0f};   ///< of the light, and of the lobe
+    core::Vec2 choices_{0.0f};           ///< of the light, and of the lobe
     core::LightReceiver previous_;
     bool connected_ = false;  ///< next-event estimation at `previous_` could find the next light
     bool surface_first_ = true, ends_at_delta_ = false;

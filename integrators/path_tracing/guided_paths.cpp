@@ -70,8 +70,9 @@ void trace_pass(const Scene& scene, const RenderOptions& options, const PathSett
 }
 
 template <bool Media>
-GuidingSamples trace_training_pass(const Scene& scene, const RenderOptions& options, const PathSettings& settings,
-                            const PassOfPaths& pass, const LearnedGuide& guide, SharedCounters& counters) {
+GuidingSamples trace_training_pass(const Scene& scene, const RenderOptions& options,
+                                   const PathSettings& settings, const PassOfPaths& pass,
+                                   const LearnedGuide& guide, SharedCounters& counters) {
     std::vector<GuidingSamples> chunks(chunks_of(pass));
     trace_pass<Media>(scene, options, settings, pass, guide, counters,
                       [&](std::size_t chunk, std::size_t, EyePacket<Media>& packet) {
@@ -185,14 +186,13 @@ std::unique_ptr<LearnedGuide> train_guide(const Scene& scene, const RenderOption
         lights::GuidingField::Settings{guiding.leaf_samples, guiding.memory * 1048576.0}, Media,
         options.memory);
     guide->decide(largest_parts<Media>(scene, guiding));
-    options.memory.require(
-        double(guiding.paths) * double(PathRecorder<Media>::max_bytes) * 2.0, "the samples of a training pass");
+    options.memory.require(double(guiding.paths) * double(PathRecorder<Media>::max_bytes) * 2.0,
+                           "the samples of a training pass");
     for (std::uint32_t i = 0; i < std::uint32_t(guiding.passes); ++i) {
         // Passes 1, 2, 4, ...: the later ones are guided better, so what was learned before counts half.
         if (std::has_single_bit(i + 1) && i > 0) guide->scale(0.5);
         const PassOfPaths pass{i, i, std::size_t(guiding.paths)};
-        GuidingSamples samples =
-            trace_training_pass<Media>(scene, options, settings, pass, *guide, counters);
+        GuidingSamples samples = trace_training_pass<Media>(scene, options, settings, pass, *guide, counters);
         guide->add(samples);
     }
     return guide;

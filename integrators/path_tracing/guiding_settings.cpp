@@ -32,13 +32,13 @@ void plan_guiding(Plan& plan, const GuidingSettings& s, const Requirements& r, b
     else
         plan.run(
             "guiding",
-            fmt::format("{}; {} training passes of {} paths before the first pass, none of them in the picture",
-                        !s.vertices                       ? "directions"
-                        : in_media && !r.media_emissive ? "directions, vertices in media, roulette"
-                                                        : "directions, roulette",
-                        s.passes, s.paths),
-            s.mode == Guiding::on ? "requested"
-                                  : "as far as trial passes find less noise for the same work");
+            fmt::format(
+                "{}; {} training passes of {} paths before the first pass, none of them in the picture",
+                !s.vertices                     ? "directions"
+                : in_media && !r.media_emissive ? "directions, vertices in media, roulette"
+                                                : "directions, roulette",
+                s.passes, s.paths),
+            s.mode == Guiding::on ? "requested" : "as far as trial passes find less noise for the same work");
     if (s.mode != Guiding::off && s.vertices && in_media && r.media_emissive)
         plan.leave_out("guided vertices in media", "distances by extinction alone",
                        "light of media that glow is sampled at collisions");

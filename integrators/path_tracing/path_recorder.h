@@ -34,11 +34,9 @@ class PathRecorder final : public PathObserver<Media> {
             sample.guide = lobes.pdf_solid_angle(sample.direction) * inverse_pdf;
             sample.own = std::max(0.0f, 1.0f - lobes.probability * sample.guide) / (1.0f - lobes.probability);
             // `weight` will be the radiance over the density: this is f cos alone.
-            sample.scattered =
-                core::average(left.eval_cos(sample.direction, core::TransportMode::radiance));
+            sample.scattered = core::average(left.eval_cos(sample.direction, core::TransportMode::radiance));
         }
-        path.arriving.push_back(
-            {sample, lights::throughput_of<Media>(w), path.found, left.on_surface()});
+        path.arriving.push_back({sample, lights::throughput_of<Media>(w), path.found, left.on_surface()});
         path.left_by_record = true;
     }
     void on_arrival(int i, const Lane& lane) override {

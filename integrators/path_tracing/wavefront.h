@@ -116,10 +116,10 @@ class Wavefront {
     std::vector<lights::VmfMixture> lobes_;           ///< directions of the guide at the vertices
     std::vector<lights::ExpectedRadiance> expected_;  ///< behind the vertices
     Numbers expected_of_path_;                        ///< at its first vertex
-    Numbers guide_ratio_;     ///< density of the path's directions over that without a guide
-    Numbers own_probability_; ///< of a direction by the BSDF; the rest are the guide's
-    Numbers guide_to_light_;  ///< density of the guide's choice of the sampled light's direction
-    Numbers next_weight_;     ///< density of the next direction by the BSDF over that of both
+    Numbers guide_ratio_;      ///< density of the path's directions over that without a guide
+    Numbers own_probability_;  ///< of a direction by the BSDF; the rest are the guide's
+    Numbers guide_to_light_;   ///< density of the guide's choice of the sampled light's direction
+    Numbers next_weight_;      ///< density of the next direction by the BSDF over that of both
 
     // By lane, of connections:
     Vectors to_light_, radiance_;

@@ -69,7 +69,8 @@ bool Wavefront::survives_roulette(int i) {
         depth_ < long_eye_path.vertices) {
         PathWeights weights;
         weights.throughput = throughput_.get(i);
-        if (!survives_by_expectation<false>(weights, expected_[std::size_t(i)].indirect / expected_of_path_[i],
+        if (!survives_by_expectation<false>(weights,
+                                            expected_[std::size_t(i)].indirect / expected_of_path_[i],
                                             rngs_[std::size_t(path_[i])].next_float()))
             return false;
         throughput_.set(i, weights.throughput);

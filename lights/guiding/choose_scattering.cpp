@@ -8,23 +8,23 @@ using namespace core;
 
 namespace {
 
-/// A place as the choice sees it.
-struct Place {
+/// A place, and what its choice depends on.
+struct WeightedPlace {
     double weight = 0.0, importance = 0.0;  ///< w; w L
 };
 
-/// Sums over places.
-struct Sums {
+/// PlaceSums over places.
+struct PlaceSums {
     double weight = 0.0, importance = 0.0, expected = 0.0;
     bool known = true;
-    Place add(const Rgb& weight_of_path, const ExpectedRadiance& radiance) {
+    WeightedPlace add(const Rgb& weight_of_path, const ExpectedRadiance& radiance) {
         const auto w = double(average(weight_of_path));
-        const Place place{w, w * double(radiance.root_square)};
+        const WeightedPlace place{w, w * double(radiance.root_square)};
         weight += place.weight, importance += place.importance;
         expected += w * double(radiance.mean), known &= radiance.known;
         return place;
     }
-    double probability(const Place& place) const {
+    double probability(const WeightedPlace& place) const {
         const double by_extinction = place.weight / weight, d = double(extinction_share);
         return importance > 0.0 ? (1.0 - d) * place.importance / importance + d * by_extinction
                                 : by_extinction;
@@ -35,9 +35,9 @@ struct Sums {
 
 ScatteringChoice choose_scattering(std::span<const ScatteringPoint> candidates, const Rgb& behind,
                                    const Vec3& surface, const ScatteringGuide& guide, float u) {
-    thread_local std::vector<Place> places;
+    thread_local std::vector<WeightedPlace> places;
     places.clear();
-    Sums sums;
+    PlaceSums sums;
     for (const ScatteringPoint& c : candidates)
         places.push_back(sums.add(c.weight, guide.expected(c.position, false)));
     if (!is_black(behind)) places.push_back(sums.add(behind, guide.expected(surface, true)));

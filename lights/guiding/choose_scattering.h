@@ -21,11 +21,11 @@ inline constexpr float extinction_share = 0.2f;
 
 /// A place where a path scatters next.
 struct ScatteringChoice {
-    std::size_t index = 0;      ///< of a candidate; their number: the surface
-    float probability = 0.0f;   ///< 0: there is no place
-    float by_extinction = 0.0f; ///< probability by extinction alone
-    float expected = 0.0f;      ///< mean radiance expected from all places, over the path's weight at the start
-    bool known = false;         ///< false: the guide knows nothing, and `expected` is of no use
+    std::size_t index = 0;       ///< of a candidate; their number: the surface
+    float probability = 0.0f;    ///< 0: there is no place
+    float by_extinction = 0.0f;  ///< probability by extinction alone
+    float expected = 0.0f;  ///< mean radiance expected from all places, over the path's weight at the start
+    bool known = false;     ///< false: the guide knows nothing, and `expected` is of no use
 };
 
 /// Samples a place by `u`. `behind`: weight of the path at the surface; black where there is none.

@@ -9,14 +9,14 @@ namespace mote::lights {
 
 /// Parts of what a guide decides.
 enum class GuideParts : std::uint8_t {
-    directions,             ///< of paths at their vertices
-    directions_and_ends,    ///< and Russian roulette
-    directions_and_vertices ///< and the places where paths scatter in media
+    directions,              ///< of paths at their vertices
+    directions_and_ends,     ///< and Russian roulette
+    directions_and_vertices  ///< and the places where paths scatter in media
 };
 
 /// Samples of training paths.
 struct GuidingSamples {
-    std::vector<GuidingSample> surfaces, media;                        ///< incident radiance
+    std::vector<GuidingSample> surfaces, media;  ///< incident radiance
     std::vector<ReflectedSample> reflected_by_surfaces, reflected_by_media;
     void append(const GuidingSamples& other);  ///< behind these
 };

@@ -11,10 +11,10 @@ using core::Vec3, core::Vec3d;
 namespace {
 
 constexpr int lobe_count = VmfMixture::capacity;
-constexpr int steps = 3;                 ///< of expectation and maximisation, for each batch
-constexpr double weight_prior = 0.1;     ///< a: effective samples in every lobe
-constexpr double direction_prior = 0.2;  ///< b: effective samples of all directions
-constexpr double enough_samples = 256.0; ///< for a probability of the mixture
+constexpr int steps = 3;                  ///< of expectation and maximisation, for each batch
+constexpr double weight_prior = 0.1;      ///< a: effective samples in every lobe
+constexpr double direction_prior = 0.2;   ///< b: effective samples of all directions
+constexpr double enough_samples = 256.0;  ///< for a probability of the mixture
 
 /// A direction and the inverse distance of what lies there.
 struct Sight {

@@ -23,11 +23,11 @@ namespace mote::lights {
 
 /// Incident radiance found in one direction.
 struct GuidingSample {
-    core::Vec3 position;     ///< where it arrives [m]
-    core::Vec3 direction;    ///< unit, to where it comes from
-    float weight;            ///< radiance over the density of the direction; finite, not negative
-    float inverse_distance;  ///< of where it comes from [1/m]; 0: from outside of the scene
-    float scattered = 0.0f;  ///< f cos there, averaged over channels; 0: without a guide
+    core::Vec3 position;             ///< where it arrives [m]
+    core::Vec3 direction;            ///< unit, to where it comes from
+    float weight;                    ///< radiance over the density of the direction; finite, not negative
+    float inverse_distance;          ///< of where it comes from [1/m]; 0: from outside of the scene
+    float scattered = 0.0f;          ///< f cos there, averaged over channels; 0: without a guide
     float own = 1.0f, guide = 0.0f;  ///< densities of vertex and mixture, over that of the direction
 };
 

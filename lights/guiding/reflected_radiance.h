@@ -2,9 +2,9 @@
 // behind a vertex.
 //
 // It weights the places where a path may scatter (choose_scattering.h) and ends paths that expect little
-// (Vorba & Křivánek 2016). The best probability of a choice goes with the root of the second moment of what is
-// found behind it, the noise of paths included (Xu et al. 2024), not with its mean. Directions are left out: a
-// leaf holds means over those from which paths came.
+// (Vorba & Křivánek 2016). The best probability of a choice goes with the root of the second moment of what
+// is found behind it, the noise of paths included (Xu et al. 2024), not with its mean. Directions are left
+// out: a leaf holds means over those from which paths came.
 #pragma once
 
 #include "core/objects/memory_budget.h"

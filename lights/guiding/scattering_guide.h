@@ -1,8 +1,8 @@
 // Guides of paths.
 //
 // Directions of a path at its scattering vertices are those of the BSDF or phase function, and those that a
-// guide adds to them, mixed by a probability (one-sample multiple importance sampling; Vorba et al. 2014). A guide may also expect radiance at vertices: then it chooses them (choose_scattering.h), and ends
-// paths.
+// guide adds to them, mixed by a probability (one-sample multiple importance sampling; Vorba et al. 2014). A
+// guide may also expect radiance at vertices: then it chooses them (choose_scattering.h), and ends paths.
 //
 // The mixture's density replaces that of the BSDF or phase function wherever it counts: in the weight of the
 // path, and against next-event estimation. A path therefore stays unbiased whatever the guide has learned.

@@ -116,8 +116,8 @@ void SpatialTree<Leaf>::split(std::uint32_t node, std::span<Sample> samples) {
     int axis = spread.variance.y > spread.variance.x ? 1 : 0;
     if (spread.variance.z > spread.variance[axis]) axis = 2;
     const auto plane = float(spread.mean[axis]);
-    const auto middle = std::stable_partition(
-        samples.begin(), samples.end(), [&](const Sample& s) { return s.position[axis] < plane; });
+    const auto middle = std::stable_partition(samples.begin(), samples.end(),
+                                              [&](const Sample& s) { return s.position[axis] < plane; });
     const std::span below(samples.begin(), middle), above(middle, samples.end());
     if (below.empty() || above.empty()) return;
 

@@ -33,8 +33,8 @@ void check_equal(const Scene& scene, const std::string& type, std::uint32_t pass
     CHECK(guided.non_finite == 0);
 }
 
-/// A guide whose lobes point anywhere, whose density counts as `factor` times what it is; and one that expects
-/// anything of vertices.
+/// A guide whose lobes point anywhere, whose density counts as `factor` times what it is; and one that
+/// expects anything of vertices.
 class AnyGuide final : public lights::ScatteringGuide {
   public:
     explicit AnyGuide(float factor, bool vertices = false) : factor_(factor), vertices_(vertices) {}
@@ -165,12 +165,13 @@ TEST_CASE("Guided vertices in media that absorb nothing are in equilibrium", "[g
     for (const double depth : {0.01, 1.0, 30.0})
         for (const double z : {-4.0, -0.3}) {
             const auto scene = scene_from(
-                fmt::format(R"(<scene version="3.0.0"><emitter type="constant"/><shape type="sphere"><bsdf type="null"/>
+                fmt::format(
+                    R"(<scene version="3.0.0"><emitter type="constant"/><shape type="sphere"><bsdf type="null"/>
                 <medium type="homogeneous" name="interior"><float name="sigma_t" value="{}"/><float name="albedo" value="1"/>
                 <phase type="hg"><float name="g" value="0.7"/></phase></medium></shape><sensor type="perspective">
                 <float name="fov" value="30"/><transform name="to_world"><lookat origin="0, 0, {}" target="0, 0, 1"
                 up="0, 1, 0"/></transform></sensor></scene>)",
-                            depth / 2.0, z),
+                    depth / 2.0, z),
                 8);
             CAPTURE(depth, z);
             check_mean_is(render_statistics(*scene, *paths("volpath", "on"), {4, 400, 7}), "beauty", 1.0);
@@ -188,7 +189,9 @@ TEST_CASE("Media that glow are guided by directions and ends alone", "[guiding]"
     Statistics statistics;
     paths("volpath", "on")->prepare(*scene, options)->add_statistics(statistics);
     CHECK(statistics.values.at("guided_vertices") == 0.0);
-    paths("volpath", "on")->prepare(*scene_from(box(grey, forward_fog), 8), options)->add_statistics(statistics);
+    paths("volpath", "on")
+        ->prepare(*scene_from(box(grey, forward_fog), 8), options)
+        ->add_statistics(statistics);
     CHECK(statistics.values.at("guided_vertices") == 1.0);
 }
 

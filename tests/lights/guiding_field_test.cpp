@@ -99,7 +99,8 @@ TEST_CASE("One sample, however bright, leaves a wide mixture", "[guiding]") {
 }
 
 TEST_CASE("The probability of the guide's directions is learned", "[guiding]") {
-    // Uniform directions by the vertex, half of them; the others by a mixture that is the radiance, or is not.
+    // Uniform directions by the vertex, half of them; the others by a mixture that is the radiance, or is
+    // not.
     const auto learned = [](const VmfMixture& radiance) {
         const VmfMixture guide = three_lobes();
         Rng rng(8);

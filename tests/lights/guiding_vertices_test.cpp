@@ -35,16 +35,16 @@ std::vector<ScatteringPoint> line_of_points(int count) {
 }
 
 /// Something that paths find at a place.
-double found_at(std::size_t index) { return 1.0 + 3.0 * double(index % 3); }
+double found_behind(std::size_t index) { return 1.0 + 3.0 * double(index % 3); }
 
 /// Mean and standard error of weight * found / probability over many choices.
-struct Estimate {
+struct ChoiceEstimate {
     double mean = 0.0, error = 0.0;
     bool agrees_with(double exact) const { return std::fabs(mean - exact) < 4.5 * error; }
 };
 template <typename ProbabilityOf>
-Estimate estimate(std::span<const ScatteringPoint> points, const Rgb& behind, const ScatteringGuide& guide,
-                  const ProbabilityOf& probability_of) {
+ChoiceEstimate estimate_by_choice(std::span<const ScatteringPoint> points, const Rgb& behind,
+                                  const ScatteringGuide& guide, const ProbabilityOf& probability_of) {
     Rng rng(11);
     const int count = 40000;
     double sum = 0.0, squares = 0.0;
@@ -52,7 +52,7 @@ Estimate estimate(std::span<const ScatteringPoint> points, const Rgb& behind, co
         const ScatteringChoice c =
             choose_scattering(points, behind, Vec3(0.0f, 0.0f, 9.0f), guide, rng.next_float());
         const Rgb weight = c.index < points.size() ? points[c.index].weight : behind;
-        const double x = double(average(weight)) * found_at(c.index) / double(probability_of(c));
+        const double x = double(average(weight)) * found_behind(c.index) / double(probability_of(c));
         sum += x, squares += x * x;
     }
     const double mean = sum / count;
@@ -65,16 +65,17 @@ TEST_CASE("The choice of a vertex keeps the mean; a probability that is not divi
           "[guiding]") {
     const auto points = line_of_points(6);
     const Rgb behind(0.3f, 0.2f, 0.1f);
-    double exact = double(average(behind)) * found_at(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) exact += double(average(points[i].weight)) * found_at(i);
+    double exact = double(average(behind)) * found_behind(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        exact += double(average(points[i].weight)) * found_behind(i);
     for (const float surface : {0.0f, 0.3f, 100.0f}) {
         CAPTURE(surface);
         const Slope guide(surface);
         const auto divided = [](const ScatteringChoice& c) { return c.probability; };
-        CHECK(estimate(points, behind, guide, divided).agrees_with(exact));
+        CHECK(estimate_by_choice(points, behind, guide, divided).agrees_with(exact));
         // Planted: the probability of extinction alone.
         const auto by_extinction = [](const ScatteringChoice& c) { return c.by_extinction; };
-        CHECK_FALSE(estimate(points, behind, guide, by_extinction).agrees_with(exact));
+        CHECK_FALSE(estimate_by_choice(points, behind, guide, by_extinction).agrees_with(exact));
     }
 }
 
@@ -85,8 +86,8 @@ TEST_CASE("Vertices are chosen by what is expected there, and some by extinction
     const int count = 20000;
     const Rgb behind(0.2f);
     for (int i = 0; i < count; ++i)
-        surface +=
-            choose_scattering(points, behind, Vec3(0.0f), Slope(0.0f), rng.next_float()).index == points.size();
+        surface += choose_scattering(points, behind, Vec3(0.0f), Slope(0.0f), rng.next_float()).index ==
+                   points.size();
     double weights = double(average(behind));
     for (const ScatteringPoint& p : points) weights += double(average(p.weight));
     // Black surfaces: the defensive share of their weight alone, d w / sum w.
