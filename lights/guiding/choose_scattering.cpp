@@ -13,7 +13,7 @@ struct WeightedPlace {
     double weight = 0.0, importance = 0.0;  ///< w; w L
 };
 
-/// PlaceSums over places.
+/// Sums over places.
 struct PlaceSums {
     double weight = 0.0, importance = 0.0, expected = 0.0;
     bool known = true;
