@@ -6,7 +6,7 @@ namespace mote::integrators {
 using namespace core;
 
 const lights::VmfMixture& Wavefront::lobes(int i) const {
-    static const lights::VmfMixture none;
+    static const lights::VmfMixture none{};
     return shared_.guided ? lobes_[std::size_t(i)] : none;
 }
 
