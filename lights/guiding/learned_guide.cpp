@@ -10,7 +10,7 @@ namespace {
 
 /// Share of the memory that goes to reflected radiance, and samples of its leaves over those of mixtures: a
 /// few moments need fewer.
-constexpr double reflected_share = 0.25, reflected_samples = 1.0 / 40.0;
+constexpr double reflected_share = 0.25, reflected_samples = 1.0 / 40.0, min_reflected_samples = 128.0;
 
 /// Half of the memory for surfaces and media each; a scene without media has surfaces alone.
 double memory_of(double bytes, bool media, bool for_media) {
@@ -21,7 +21,7 @@ GuidingField::Settings field_settings(const GuidingField::Settings& s, bool medi
 }
 ReflectedField reflected_field(const GuidingField::Settings& s, bool media, bool for_media,
                                const MemoryBudget& memory) {
-    return {std::max(1.0, reflected_samples * s.leaf_samples),
+    return {std::max(min_reflected_samples, reflected_samples * s.leaf_samples),
             reflected_share * memory_of(s.bytes, media, for_media), memory};
 }
 

@@ -46,7 +46,7 @@ class LearnedGuide final : public ScatteringGuide {
     const GuidingField& media() const { return media_; }        ///< what arrives in media
     std::size_t leaves() const;                                 ///< of all fields
 
-    static constexpr int candidates_of_a_segment = 4;
+    static constexpr int candidates_of_a_segment = 2;
 
   private:
     GuidingField surfaces_, media_;

@@ -181,7 +181,7 @@ TEST_CASE("Guided vertices in media that absorb nothing are in equilibrium", "[g
 TEST_CASE("Media that glow are guided by directions and ends alone", "[guiding]") {
     const std::string glowing =
         R"(<medium type="homogeneous" name="interior"><float name="sigma_t" value="1"/><float name="albedo" value="0.5"/>
-        <rgb name="radiance" value="1, 2, 3"/></medium>)";
+        <rgb name="Le" value="1, 2, 3"/></medium>)";
     const auto scene = scene_from(box(grey, glowing), 8);
     check_equal(*scene, "volpath", 1500);
     RenderOptions options;
