@@ -57,7 +57,7 @@ class ScatteringPoints {
     double sample(const std::vector<ScatteringPoint>& from, std::size_t count,
                   std::vector<ScatteringPoint>& to);
 
-    /// Of the ray, in one medium.
+    /// A part of the ray in one medium.
     struct Part {
         MediumState state;
         float begin, end;  ///< [m]

@@ -323,7 +323,8 @@ bool EyePath<Media>::make_next_vertex(const core::WalkEvent& event) {
     return true;
 }
 
-/// The radiance of the whole path is expected at its first vertex, unless choose_vertex() knows better.
+/// The radiance of the whole path is expected at its first vertex, unless choose_vertex() has expected it
+/// along the segment.
 template <bool Media>
 void EyePath<Media>::expect_radiance() {
     expected_ = guide_.expected(vertex_.position, vertex_.on_surface());
@@ -359,7 +360,7 @@ bool EyePath<Media>::wants_more() const {
     return scatterings_ + 1 != limits_.max_scatterings && limits_.wanted[transport_layer(2, surface)];
 }
 
-/// By expected contribution where the guide knows it, else by what is left of the throughput.
+/// By expected contribution where the guide has learned it, else by what is left of the throughput.
 template <bool Media>
 bool EyePath<Media>::survives_roulette(core::WalkContext& context) {
     if (expected_.known && expected_of_path_ > 0.0f && vertex_.connectable() &&

@@ -22,7 +22,7 @@ bool survives(core::PathWeights& weights, float scale, int depth, float u) {
 /// Below this share of the radiance expected of a pixel a path is subject to roulette: the lower end of the
 /// window of Vorba & Křivánek 2016, 2 / (1 + s) with s = 5. Paths above it are not split.
 inline constexpr float roulette_window = 1.0f / 3.0f;
-/// What is expected may be wrong: no path survives with less.
+/// Lower bound of the probability of survival: expectations may be wrong.
 inline constexpr float min_survival = 0.1f;
 
 /// survives() by expected contribution: `expected` is the radiance expected behind the vertex over that of

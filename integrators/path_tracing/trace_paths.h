@@ -33,8 +33,8 @@ void trace_paths(const core::Scene& scene, const PathSettings& settings, EyePack
 /// Unobserved.
 template <bool Media>
 void trace_paths(const core::Scene& scene, const PathSettings& settings, EyePacket<Media>& packet) {
-    PathObserver<Media> nobody;
-    trace_paths(scene, settings, packet, nobody);
+    PathObserver<Media> idle;
+    trace_paths(scene, settings, packet, idle);
 }
 
 }  // namespace mote::integrators

@@ -20,7 +20,7 @@ namespace mote::integrators {
 /// Scene, limits and tables that the wavefronts of a render have in common.
 struct WavefrontScene {
     WavefrontScene(const core::Scene& s, const EyePathLimits& l);
-    /// Of guided paths.
+    /// For guided paths.
     WavefrontScene(const core::Scene& s, const EyePathLimits& l, const lights::ScatteringGuide& g);
     /// False where paths need what a wavefront does not have: panes, lights that eye rays pass, a bound.
     static bool suits(const core::Scene& scene, const PathSettings& settings);

@@ -14,7 +14,7 @@ const lights::VmfMixture& Wavefront::lobes(int i) const {
 void Wavefront::find_guides() {
     for (int i = 0; i < rays_.count; ++i) {
         if (kind_[i] == Kind::ended) continue;
-        if (kind_[i] == Kind::lambertian) {  // as much of a vertex as guides look at
+        if (kind_[i] == Kind::lambertian) {  // what guides read of a vertex
             vertex_.position = hits_.position.get(i), vertex_.wo = wo(i);
             vertex_.bsdf = hits_.shape[i]->bsdf.get();
             vertex_.hit.shading.n = hits_.shading_normal.get(i);

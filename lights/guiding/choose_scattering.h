@@ -16,7 +16,7 @@
 
 namespace mote::lights {
 
-/// Of the defensive mixture: probability d of a choice by extinction alone.
+/// Probability d of a choice by extinction alone, in the defensive mixture.
 inline constexpr float extinction_share = 0.2f;
 
 /// A place where a path scatters next.
@@ -25,7 +25,7 @@ struct ScatteringChoice {
     float probability = 0.0f;    ///< 0: there is no place
     float by_extinction = 0.0f;  ///< probability by extinction alone
     float expected = 0.0f;  ///< mean radiance expected from all places, over the path's weight at the start
-    bool known = false;     ///< false: the guide knows nothing, and `expected` is of no use
+    bool known = false;     ///< false: nothing was learned, and `expected` is of no use
 };
 
 /// Samples a place by `u`. `behind`: weight of the path at the surface; black where there is none.

@@ -50,7 +50,7 @@ class MixtureFit {
     /// The mixture at a point, by parallax. Empty before light was found.
     VmfMixture at(const core::Vec3& position) const;
 
-    /// Of a direction of the mixture; a half before enough was learned.
+    /// Probability of a direction of the mixture; a half before enough was learned.
     float probability() const;
     double samples() const { return samples_; }                    ///< those without light too
     double light() const;                                          ///< sum of all weights
