@@ -88,10 +88,9 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command.add_option("--noise", a.noise, "Stop when the noise is this, such as 0.02 (see docs/testing.md)")
         ->check(number_above_0());
     command
-        .add_option(
-            "--error", a.error,
-            "Stop when the error, bias of filters included, is below this, such as 0.03: the upper end of "
-            "its interval (see docs/testing.md)")
+        .add_option("--error", a.error,
+                    "Stop when the error, bias included, is below this, such as 0.03: the upper end of "
+                    "its interval (see docs/testing.md)")
         ->check(number_above_0());
     command.add_option("--seed", a.seed, "Another seed gives another, independent picture")
         ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));

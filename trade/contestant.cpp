@@ -93,7 +93,7 @@ core::Film make_film(const core::Scene& scene, const core::Integrator& integrato
     const core::FilmSettings& film = scene.film();
     std::vector<core::Layer> layers = integrator.layers(scene);
     const bool halves =
-        film.interval && integrator.plan(scene, core::find_requirements(scene)).error_is_known();
+        film.interval && integrator.plan(scene, core::find_requirements(scene)).halves_show_error();
     core::FilmMemory(film.width, film.height, layers, false, {}, halves).require({});
     return {film.width, film.height, std::move(layers), false, halves};
 }

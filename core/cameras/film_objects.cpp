@@ -61,8 +61,9 @@ void register_film_objects(Registry& registry) {
          row("component_format", &S::half, {{"float32", false}, {"float16", true}},
              "Numbers in the file: float16 takes half the size."),
          row("interval", &S::interval,
-             "State the error, bias of filters included, with an interval of 95 % confidence, where "
-             "the method allows it. The passes are two independent halves, and filters work on each."),
+             "State the error, bias included, with an interval of 95 % confidence. The passes are two "
+             "independent halves, and filters work on each; images of biased methods are compared with "
+             "control passes of paths at one pixel of eight."),
          nested("rfilter", &S::filter, Category::rfilter, "gaussian", "Reconstruction filter.")},
         R"(<film type="hdrfilm"><integer name="width" value="640"/><rfilter type="box"/></film>)", make_film);
     register_filters(registry);

@@ -24,6 +24,7 @@
 #include "core/film/exact_sums.h"
 #include "core/film/pass_image.h"
 #include "core/metrics/halves_error.h"
+#include "core/metrics/relative_error.h"
 #include "core/objects/memory_budget.h"
 
 namespace mote::core {
@@ -140,6 +141,10 @@ class Film {
         double noise = std::numeric_limits<double>::infinity();
     };
     GainAndNoise gain_and_noise() const;  ///< noise() and what it is computed with
+    /// Weights of errors (core/metrics/relative_error.h), relative to `scale` times the light of the beauty
+    /// as it is shown: by the picture where post-processes have worked on every layer, else without most of
+    /// its noise.
+    RelativeWeights shown_weights(float scale = 1.0f) const;
     /// The error of the beauty with the bias of post-processes, from the two halves of the passes
     /// (core/metrics/halves_error.h): for passes without bias whose noise is independent from pixel to pixel.
     /// Nothing where the film keeps no halves, a half of a part has fewer than two passes, or a post-process
@@ -193,6 +198,7 @@ class Film {
     void check_room(const Part& part, std::uint32_t more) const;
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
     bool has_replaced_variance() const;
+    bool every_layer_is_replaced() const;  ///< of the beauty: set_mean() or set_halves()
     bool every_layer_is_filtered() const;  ///< by halves: set_halves()
     /// Variance of the beauty as it is shown: that of set_mean() in place of the variance of a layer's
     /// passes.

@@ -90,6 +90,21 @@ bool Film::every_layer_is_filtered() const {
     return true;
 }
 
+bool Film::every_layer_is_replaced() const {
+    for (std::size_t i = 0; i < layers_.size(); ++i)
+        if (!layers_[i].auxiliary && replaced_[i].mean.empty()) return false;
+    return true;
+}
+
+RelativeWeights Film::shown_weights(float scale) const {
+    std::vector<Rgb> picture = beauty();
+    for (Rgb& light : picture) light *= scale;
+    if (every_layer_is_replaced()) return relative_weights(picture);
+    std::vector<Rgb> variance = shown_variance_of_mean(1.0);
+    for (Rgb& v : variance) v *= scale * scale;
+    return relative_weights(picture, variance, width_, height_);
+}
+
 std::optional<PictureError> Film::error() const {
     if (!halves_) return std::nullopt;
     for (std::size_t i = 0; i < parts(); ++i)
@@ -116,7 +131,8 @@ std::optional<PictureError> Film::error() const {
         blocks(relative_weights(picture, shown_variance_of_mean(1.0), width_, height_)).of_picture();
     const PictureError high = blocks(weights_of_halves(a.shown, b.shown, width_, height_)).of_picture();
     return PictureError{std::sqrt(0.5 * (low.error * low.error + high.error * high.error)),
-                        std::min(low.low, high.low), std::max(low.high, high.high)};
+                        std::min(low.low, high.low), std::max(low.high, high.high),
+                        std::max(low.rule_high, high.rule_high)};
 }
 
 }  // namespace mote::core

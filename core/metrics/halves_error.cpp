@@ -45,16 +45,6 @@ struct Sums {
     }
 };
 
-PictureError interval(double noise, double rest, double variance, double norm) {
-    PictureError result;
-    if (!(norm > 0.0) || !std::isfinite(variance)) return result;
-    const double within = quantile * std::sqrt(variance), squared = noise + rest;
-    result.error = std::sqrt(std::max(squared, noise) / norm);
-    result.low = std::sqrt(std::max(0.0, squared - within) / norm);
-    result.high = std::sqrt(std::max(squared + within, noise) / norm);
-    return result;
-}
-
 double sum_of(const std::vector<double>& values) {
     double sum = 0.0;
     for (const double value : values) sum += value;
@@ -63,17 +53,28 @@ double sum_of(const std::vector<double>& values) {
 
 }  // namespace
 
+PictureError error_interval(const SquaredError& e) {
+    PictureError result;
+    if (!(e.norm > 0.0) || !std::isfinite(e.variance)) return result;
+    const double within = quantile * std::sqrt(e.variance), squared = e.noise + e.rest;
+    result.error = std::sqrt(std::max(squared, e.noise) / e.norm);
+    result.low = std::sqrt(std::max(0.0, squared - within) / e.norm);
+    result.high = std::sqrt(std::max(squared + within, e.noise) / e.norm);
+    result.rule_high = std::sqrt((std::max(squared, e.noise) + within) / e.norm);  // Eq. (5)
+    return result;
+}
+
 std::size_t BlockErrors::index_of(std::size_t pixel, int width) const {
     const int x = int(pixel % std::size_t(width)), y = int(pixel / std::size_t(width));
     return std::size_t(y / size * columns + x / size);
 }
 
 PictureError BlockErrors::of_picture() const {
-    return interval(sum_of(noise), sum_of(rest), sum_of(variance), sum_of(norm));
+    return error_interval({sum_of(noise), sum_of(rest), sum_of(variance), sum_of(norm)});
 }
 
 PictureError BlockErrors::of_block(std::size_t block) const {
-    return interval(noise.at(block), rest.at(block), variance.at(block), norm.at(block));
+    return error_interval({noise.at(block), rest.at(block), variance.at(block), norm.at(block)});
 }
 
 BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, std::span<const Rgb> r,

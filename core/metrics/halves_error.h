@@ -29,6 +29,13 @@
 // Weights are relative to the light of a pixel, which is known with noise as well. With W_a and W_b, those of
 // either half by itself, a block has the sums X_a and X_b; they differ by twice the standard error of their
 // mean, and (X_a - X_b)^2 / 4 is added to s^2 (4).
+//
+// A rule that ends a render as soon as the upper end is low enough finds the look at which the rest is lowest
+// by chance: with few passes, far below zero. The square of a bias is not, so the upper end for rules is
+//
+//   noise + max(0, rest) + 1.96 s,                                                                      (5)
+//
+// which is low at no look whose s is not small.
 #pragma once
 
 #include <array>
@@ -50,7 +57,20 @@ struct PictureError {
     double error = std::numeric_limits<double>::infinity();  ///< infinity: not known
     double low = 0.0;                                        ///< end of the interval
     double high = std::numeric_limits<double>::infinity();   ///< end of the interval
+    /// Upper end for a rule that is evaluated again and again, Eq. (5); nowhere below `high`.
+    double rule_high = std::numeric_limits<double>::infinity();
 };
+
+/// Squared error in the measure of Eq. (2) of relative_error.h, before it is divided by the norm.
+struct SquaredError {
+    double noise = 0.0;     ///< that is known
+    double rest = 0.0;      ///< whose mean is the square of the bias
+    double variance = 0.0;  ///< of `rest`
+    double norm = 0.0;      ///< sum w |r|^2
+};
+
+/// Interval of 95 % confidence; not known without a norm or a finite variance.
+PictureError error_interval(const SquaredError& squared);
 
 /// Error of blocks of pixels, row by row: the terms of the sums over the picture.
 struct BlockErrors {

@@ -32,7 +32,7 @@ struct CameraRay {
 inline CameraRay camera_ray(const Camera& camera, const PassContext& pass, int x, int y, Sampler& sampler,
                             const Vec2* lens = nullptr) {
     const Vec2 offset = pass.filter.sample_offset(sampler.next_2d());
-    const Vec2 film = Vec2(float(x) + 0.5f, float(y) + 0.5f) + offset;
+    const Vec2 film = pass.positions.corner(x, y) + Vec2(0.5f) + offset;
     return {camera.sample_ray(film, lens ? *lens : sampler.next_2d()), film};
 }
 

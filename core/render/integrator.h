@@ -24,6 +24,7 @@
 #include "core/objects/cancellation.h"
 #include "core/objects/memory_budget.h"
 #include "core/objects/object.h"
+#include "core/render/pixel_positions.h"
 #include "core/render/plan.h"
 #include "core/render/point_lights.h"
 #include "core/render/statistics.h"
@@ -65,6 +66,7 @@ struct PassContext {
     const PixelFilter& filter;           ///< where samples fall
     const std::atomic<bool>& cancelled;  ///< a cancelled pass returns false or throws Cancelled
     std::size_t part = 0;                ///< of the picture (Layer::part)
+    PixelPositions positions = {};       ///< of the image's pixels in the film
 };
 
 /// A method at work on one view.
@@ -110,6 +112,10 @@ class Integrator : public Object {
     /// Techniques that will run for this scene, with reasons.
     virtual Plan plan(const Scene& scene, const Requirements& requirements) const = 0;
     virtual std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const = 0;
+    /// A method whose passes are an unbiased estimate of all the light that this one is to find, with errors
+    /// that are independent from pixel to pixel: for control passes (control_passes.h); null where there is
+    /// none. Plan::control_shows_error says whether it finds all light of the scene.
+    virtual std::shared_ptr<const Integrator> control(const Scene& /*scene*/) const { return nullptr; }
     /// The points that bring light to its pixels; null where the method has none.
     virtual std::unique_ptr<PointLights> point_lights(const Scene& /*scene*/,
                                                       const RenderOptions& /*options*/) const {

@@ -31,7 +31,7 @@ void append_table(std::string& text, const std::string& title, const std::vector
 
 }  // namespace
 
-std::string Plan::no_error_because() const {
+std::string Plan::no_halves_because() const {
     if (!missing.empty()) return missing.front().topic + " is missing";
     return error_unknown.empty() ? noise_unknown : error_unknown;
 }

@@ -28,6 +28,8 @@ struct Plan {
     /// do: passes have the light of the scene as their mean, and noise that is independent from pixel to
     /// pixel.
     std::string error_unknown = "its passes may err alike, or pixels in common";
+    /// True if control passes (Integrator::control) show the error where halves do not.
+    bool control_shows_error = false;
 
     /// Adds to `runs`.
     void run(std::string topic, std::string choice, std::string reason);
@@ -37,8 +39,12 @@ struct Plan {
     void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
     /// Reason why halves of the passes do not show the error of the image: error_unknown, noise_unknown, or
     /// what is missing. "" where they do.
-    std::string no_error_because() const;
-    bool error_is_known() const { return no_error_because().empty(); }  ///< true where halves show it
+    std::string no_halves_because() const;
+    bool halves_show_error() const { return no_halves_because().empty(); }
+    /// Reason why the error of the image is not known: neither halves nor control passes show it. "" where it
+    /// is.
+    std::string no_error_because() const { return control_shows_error ? "" : no_halves_because(); }
+    bool error_is_known() const { return no_error_because().empty(); }
     /// Messages for the user: a warning for each thing that takes very long or that this integrator cannot
     /// compute, and one line with the switches of a topic for what it leaves out by choice.
     std::vector<std::string> warnings() const;

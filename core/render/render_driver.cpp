@@ -13,6 +13,7 @@
 #include "core/objects/memory_error.h"
 #include "core/render/checkpoint.h"
 #include "core/render/deadline.h"
+#include "core/render/error_source.h"
 #include "core/render/pass_runner.h"
 #include "core/render/stop_clock.h"
 #include "core/scene/scene.h"
@@ -29,8 +30,9 @@ double seconds_since(Clock::time_point start) {
 // One render: what the loop keeps from pass to pass.
 class PassLoop {
   public:
-    PassLoop(const RenderRequest& request, const StopRule& stop, PassRunner& runner, RenderResult& result)
-        : request_(request), stop_(stop), runner_(runner), result_(result) {
+    PassLoop(const RenderRequest& request, const StopRule& stop, PassRunner& runner, ErrorSource& errors,
+             RenderResult& result)
+        : request_(request), stop_(stop), runner_(runner), errors_(errors), result_(result) {
         state_.passes = result.film.pass_count();
         state_.seconds_before = request.seconds_before + runner.build_seconds();
     }
@@ -77,8 +79,8 @@ class PassLoop {
     }
     /// The error, or nothing where the passes do not show it.
     std::optional<PictureError> stated(const Film& film) const {
-        if (!request_.halves || !std::isfinite(known(1.0)) || found_no_light()) return std::nullopt;
-        return film.error();
+        if (!errors_.states_error() || has_few_samples() || found_no_light()) return std::nullopt;
+        return errors_.error(film);
     }
     /// The variance of 64 normal samples has a relative standard error of sqrt(2 / 63), a sixth; that of
     /// fewer, or of light that few paths meet, may say nothing.
@@ -138,6 +140,7 @@ class PassLoop {
     }
 
     void run_passes() {
+        if (result_.film.pass_count() > 0) errors_.after_pass(result_.film, cancelled_flag());
         if (!rule_looks() || noise_rule_looks()) refresh_noise();
         while (!is_done()) {
             if (interrupted()) break;
@@ -173,6 +176,7 @@ class PassLoop {
     void after_pass() {
         ++state_.passes_of_this_run;
         state_.passes = result_.film.pass_count();
+        errors_.after_pass(result_.film, cancelled_flag());
         state_.seconds = seconds_since(start_);
         // The rule must not depend on the clock; for the eye twice a second will do, and a twentieth of the
         // time.
@@ -246,7 +250,7 @@ class PassLoop {
         const std::optional<PictureError> error = stated(result_.film);
         look(error);
         const double finished = changes_noise() ? result_.film.noise() : 0.0;
-        if (request_.halves) finished_error_ = error.value_or(PictureError());
+        if (errors_.states_error()) finished_error_ = error.value_or(PictureError());
         if (!stop_.error) state_.error = finished_error_;  // a rule must not depend on previews
         preview_means_ = result_.film.exchange_replaced(), preview_passes_ = state_.passes;
         if (!changes_noise()) return;
@@ -276,6 +280,7 @@ class PassLoop {
     const RenderRequest& request_;
     const StopRule& stop_;
     PassRunner& runner_;
+    ErrorSource& errors_;
     RenderResult& result_;
     const std::atomic<bool> never_{false};
     RenderState state_{.noise = infinity};
@@ -338,7 +343,7 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     if (!request.checkpoint_path.empty() && !request.resume)
         require_own_checkpoint(request.checkpoint_path, request.content_hash);
     StopRule stop = request.stop;
-    if (stop.error && !request.halves)
+    if (stop.error && !request.halves && !request.control)
         throw InputError("the error of this image is not known, and a limit on it would not end the render");
     if (!stop.passes && !stop.seconds && !stop.noise && !stop.error && !request.enough)
         stop.passes = std::uint32_t(settings.sample_count);
@@ -359,10 +364,13 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
 
     const CancelToken token = request.interrupted ? CancelToken(*request.interrupted) : CancelToken();
     std::optional<PassRunner> runner;
+    std::unique_ptr<ErrorSource> errors;
     try {
         with_memory_for("what '" + integrator.type() + "' builds before its passes", [&] {
             runner.emplace(scene, integrator, request.seed, result.film, request.features, token,
                            request.memory.without(needed.peak() - needed.begin()));
+            errors = make_error_source(scene, request, token,
+                                       request.memory.without(needed.peak() - needed.begin()));
         });
     } catch (const Cancelled&) {
         result.interrupted = true;
@@ -372,13 +380,13 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     if (request.range) begin_range(*request.range, runner->estimator(), result.film);
     if (request.building_is_over) request.building_is_over();
 
-    PassLoop loop(request, stop, *runner, result);
+    PassLoop loop(request, stop, *runner, *errors, result);
     loop.run();
     if (request.passes_are_over) request.passes_are_over();
 
     loop.finish_picture(integrator.type());
     loop.state_noise();
-    runner->add_statistics(result.statistics);
+    runner->add_statistics(result.statistics), errors->add_statistics(result.statistics);
     result.statistics.non_finite_samples += result.film.non_finite();
     return result;
 }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -22,7 +23,8 @@ struct StopRule {
     /// that takes: ends as near to it as whole passes allow, after one at least.
     std::optional<double> seconds;
     std::optional<double> noise;  ///< Film::noise() of the finished picture, tested from 8 passes on
-    /// Upper end of the interval of Film::error() of the finished picture, tested from 8 passes on.
+    /// Upper end for rules of the error of the finished picture (PictureError::rule_high), tested from 8
+    /// passes on.
     std::optional<double> error = {};
 };
 
@@ -60,6 +62,8 @@ struct RenderRequest {
     MemoryBudget memory;               ///< of the film, and of what the integrator builds
     bool noise_is_known = true;        ///< false: none is stated (Plan::noise_unknown)
     bool halves = false;               ///< the film keeps halves of the passes, and an error is stated
+    /// Integrator::control() of the integrator: the error is stated by its passes; null: by none.
+    std::shared_ptr<const Integrator> control;
     std::function<bool(const Film&)> enough;  ///< a rule of the caller's, tested with the noise rule
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after
@@ -95,7 +99,7 @@ struct RenderResult {
     std::optional<std::uint32_t> finished_for = {};
     /// Not empty: the film holds a part of one pass, the pixels with a 1, and zeros elsewhere.
     std::vector<std::uint8_t> finished_pixels = {};
-    /// Film::error() of the finished picture; nothing where it is not known.
+    /// Error of the finished picture; nothing where it is not known.
     std::optional<PictureError> error = {};
     std::string checkpoint_problem = "";  ///< why the last checkpoint could not be written
 };
@@ -104,7 +108,7 @@ struct RenderResult {
 inline constexpr double max_finish_seconds = 1.0;
 
 /// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
-/// kept. Throws InputError when StopRule::error is set without RenderRequest::halves, when a range of passes
+/// kept. Throws InputError when StopRule::error is set and no error is stated, when a range of passes
 /// is requested and the integrator cannot determine which those are, when a checkpoint does not belong to
 /// this render or is damaged, and when something else stands where it is to be written; OutOfMemory when the
 /// film does not fit into the budget. One that cannot be written is a warning and another try later: the one

@@ -47,7 +47,7 @@ inline bool must_stop(const StopRule& rule, const RenderState& state) {
         state.seconds_before + state.seconds + pass - late + state.seconds_to_finish >= *rule.seconds)
         return true;
     if (state.passes < noise_rule_from) return false;
-    return (rule.noise && state.noise <= *rule.noise) || (rule.error && state.error.high <= *rule.error);
+    return (rule.noise && state.noise <= *rule.noise) || (rule.error && state.error.rule_high <= *rule.error);
 }
 
 /// Seconds until the first rule will hold, if passes take as long as before; negative where unknown.
@@ -64,8 +64,8 @@ inline double seconds_left(const StopRule& rule, const RenderState& state) {
         const double ratio = state.noise / *rule.noise;
         left = std::min(left, std::max(0.0, per_pass * state.passes * (ratio * ratio - 1.0)));
     }
-    if (rule.error && std::isfinite(state.error.high) && per_pass > 0.0) {
-        const double ratio = state.error.high / *rule.error;  // at best: bias falls more slowly
+    if (rule.error && std::isfinite(state.error.rule_high) && per_pass > 0.0) {
+        const double ratio = state.error.rule_high / *rule.error;  // at best: bias falls more slowly
         left = std::min(left, std::max(0.0, per_pass * state.passes * (ratio * ratio - 1.0)));
     }
     return std::isfinite(left) ? left : -1.0;

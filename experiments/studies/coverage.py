@@ -1,22 +1,25 @@
 #!/usr/bin/python3
-"""How often the stated interval of 95 % contains the true error of an image (docs/testing.md, "Error with the bias of filters").
+"""How often the stated interval of 95 % contains the true error of an image (docs/testing.md, "Error with bias").
 
 Usage: coverage.py [--mote build/release/bin/mote] [--scenes A,B] [--methods "A;B"] [--seeds N] [--passes N] [--error E]
-                   [--references FOLDER] [--reference-passes N] [--threads N] [--cost] [--quick]
+                   [--references FOLDER] [--reference-passes N] [--threads N] [--csv FILE] [--cost] [--quick]
 Renders each scene at 96 x 64 pixels with many seeds and compares each image, by `mote compare`, with a long reference of
 another seed, whose noise is subtracted (with two references the weights are those of neighbours, another measure where small
 lamps are in view). Prints for every scene and method the share of seeds whose
 interval contains the true error, how many miss it on either side, true error and ends of the interval (root mean squares over
-seeds), and the share of an optimist: an interval of the same width around the noise, which ignores the bias of filters. A
-method whose error is not known states no interval. --error E renders until the upper end is below E instead, and prints the
+seeds), and the share of an optimist: an interval of the same width around the noise, which ignores the bias of filters and
+methods. A method whose error is not known states no interval. --csv adds a row for each scene and method to a file. --error E renders until the upper end is below E instead, and prints the
 share of seeds whose true error is between 0.6 and 1.0 of E: an interval that is evaluated until it is short enough contains
 the error less often. --cost prints instead what the two halves cost at equal passes: true error and processor time of building,
-passes and filter with film.interval, over those without, seed by seed in turns. The exit status is 1 where a share lies outside of 93 to 97 % by more than three standard deviations of
-so many seeds, and where the optimist is right everywhere: then the study could not have found a wrong interval.
+passes and filter with film.interval, over those without, seed by seed in turns, and of methods that keep no halves what their control passes cost. The exit status is 1 where a share
+lies outside of 93 to 97 % by more than three standard deviations of so many seeds, and where the optimist is right everywhere:
+then the study could not have found a wrong interval.
 """
 import argparse
+import csv
 import json
 import math
+import re
 import resource
 import statistics
 import subprocess
@@ -31,19 +34,36 @@ METHODS = {
     "layers, own filter": ("mote_layers", {"filter": "own"}),
     "layers, OIDN": ("mote_layers", {"filter": "oidn"}),
     "layers, no filter": ("mote_layers", {"filter": "none"}),
+    "layers, far lights, OIDN": ("mote_layers", {"filter": "oidn", "far_light": "lights"}),
+    "paths, OIDN": ("mote_layers", {"filter": "oidn", "nested": "volpath"}),
     "volpath": ("volpath", {}),
     "mote_vpl": ("mote_vpl", {}),
     "mote_vpl, unbounded": ("mote_vpl", {"bound": 0}),
 }
 
 
+def scene_with(scene, nested, folder):
+    """The scene with mote_layers of one nested integrator, as a file beside links to what it names."""
+    for path in (ROOT / "scenes").iterdir():
+        link = folder / path.name
+        if path.suffix != ".xml" and not link.exists():
+            link.symlink_to(path)
+    text = (ROOT / f"scenes/{scene}.xml").read_text()
+    text = re.sub(r'<integrator [^>]*[^/]>.*?</integrator>|<integrator [^>]*/>', "", text, flags=re.S)
+    file = folder / f"{scene}_{nested}.xml"
+    file.write_text(text.replace("<sensor ", f'<integrator type="mote_layers"><integrator type="{nested}"/></integrator><sensor ', 1))
+    return file
+
+
 def render(args, scene, method, rule, seed, output, interval=True):
     """The statistics of the image, and the processor time of the whole command."""
     integrator, settings = method
     stats = output.with_suffix(".json")
-    defines = [x for k, v in settings.items() for x in ("-D", f"integrator.{k}={v}")]
+    nested = settings.get("nested")
+    file = scene_with(scene, nested, output.parent) if nested else ROOT / f"scenes/{scene}.xml"
+    defines = [x for k, v in settings.items() if k != "nested" for x in ("-D", f"integrator.{k}={v}")]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([args.mote, "render", ROOT / f"scenes/{scene}.xml", "--integrator", integrator, "-t", str(args.threads),
+    subprocess.run([args.mote, "render", file, "--integrator", integrator, "-t", str(args.threads),
                     "--quiet", *FILM, "-D", f"film.interval={str(interval).lower()}", *rule, "--seed", str(seed), *defines,
                     "-o", output, "--stats", stats], check=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -83,7 +103,7 @@ def study(args, scene, name, reference, folder):
         counts["above"] += error > high
         counts["below"] += error < low
         # The same width on the squares, around the noise.
-        middle, within = said["noise"] ** 2, (high ** 2 - low ** 2) / 2
+        middle, within = (said["noise"] or 0.0) ** 2, (high ** 2 - low ** 2) / 2
         counts["optimist"] += middle - within <= error ** 2 <= middle + within
         counts["in time"] += bool(args.error) and 0.6 * args.error <= error <= args.error
         errors.append(error), lows.append(low), highs.append(high)
@@ -91,7 +111,18 @@ def study(args, scene, name, reference, folder):
     print(f"{scene:12} {name:20} {100 * counts['in'] / n:5.0f} %  (above {counts['above']}, below {counts['below']} of {n})   "
           f"true {root_mean_square(errors):7.2%}   stated {root_mean_square(lows):7.2%} to {root_mean_square(highs):7.2%}   "
           f"optimist {100 * counts['optimist'] / n:4.0f} %"
-          + (f"   0.6 to 1.0 of the limit {100 * counts['in time'] / n:4.0f} %" if args.error else ""), flush=True)
+          + (f"   0.6 to 1.0 of the limit {100 * counts['in time'] / n:4.0f} %, "
+             f"below {sum(e <= args.error for e in errors)} of {n}" if args.error else ""), flush=True)
+    if args.csv:
+        new = not args.csv.exists()
+        with args.csv.open("a", newline="") as file:
+            rows = csv.writer(file)
+            if new:
+                rows.writerow(["scene", "method", "rule", "seeds", "in", "above", "below", "optimist", "true", "low", "high",
+                               "0.6_to_1.0_of_the_limit"])
+            rows.writerow([scene, name, " ".join(rule), n, counts["in"], counts["above"], counts["below"], counts["optimist"],
+                           *(f"{root_mean_square(values):.5f}" for values in (errors, lows, highs)),
+                           counts["in time"] if args.error else ""])
     return counts
 
 
@@ -122,6 +153,7 @@ def main():
     parser.add_argument("--references", type=Path, help="folder of references, made where they are missing")
     parser.add_argument("--reference-passes", type=int, default=8192)
     parser.add_argument("--threads", type=int, default=0)
+    parser.add_argument("--csv", type=Path)
     parser.add_argument("--cost", action="store_true", help="error and time with halves over those without, at equal passes")
     parser.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
     args = parser.parse_args()

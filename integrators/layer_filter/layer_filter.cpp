@@ -26,9 +26,8 @@ LayerOfPasses of_passes(Film& film, std::size_t layer) {
 }
 
 /// The filtered sum of layers, of which each keeps its fraction of a pixel.
-std::vector<std::vector<Rgb>> filtered_sum(const screenspace::ViewFilter& filter,
-                                           std::vector<LayerOfPasses> layers, screenspace::LayerKind kind,
-                                           CancelToken cancelled) {
+std::vector<std::vector<Rgb>> filtered_sum(screenspace::ViewFilter& filter, std::vector<LayerOfPasses> layers,
+                                           screenspace::LayerKind kind, CancelToken cancelled) {
     std::vector<Rgb> sum(layers[0].mean.size(), Rgb(0.0f)), variance = sum;
     for (const LayerOfPasses& layer : layers)
         for (std::size_t p = 0; p < sum.size(); ++p)
@@ -136,6 +135,7 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
                 apply_to_mean(film, choice, cancelled);
         }
     }
+    filter_->release();
     filter_seconds_ += seconds;
     seconds_per_layer_ = seconds / (double(layers_.size()) * (halves ? 2.0 : 1.0));
 }
@@ -166,6 +166,7 @@ bool LayerFilter::apply_for_preview(Film& film, CancelToken cancelled) {
             runs += halves ? 2.0 : 1.0;
         }
     }
+    filter_->release();
     filter_seconds_ += seconds;
     if (runs > 0.0) seconds_per_layer_ = filter_->full_per_preview() * seconds / runs;
     return false;

@@ -4,6 +4,7 @@
 
 #include "core/scene/scene.h"
 #include "integrators/eye_path/plan_coarse_voxels.h"
+#include "integrators/path_tracing/unbiased_paths.h"
 #include "integrators/register_parts.h"
 #include "integrators/single_scattering/single_scattering_estimator.h"
 
@@ -15,16 +16,6 @@ namespace {
 
 /// More lights than this, marched one after the other, take longer than one that is sampled.
 constexpr std::size_t max_marched_lights = 16;
-
-/// Light at collisions close to a lamp has no finite variance: the density of collisions does not follow
-/// 1/d^2.
-bool lamps_in_media(const Scene& scene) {
-    const auto lights = positional_lights(scene);
-    return std::any_of(lights.begin(), lights.end(), [&](const Emitter* light) {
-        const Medium* medium = scene.emitter_medium_state(*light, {}).current();
-        return medium && medium->traits().scattering;
-    });
-}
 
 /// Everything but what is left to chance without need: the light of a few lights with a position, scattered
 /// once in media, is marched.

@@ -14,6 +14,7 @@
 #include "core/objects/number_text.h"
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/layers/layers_estimator.h"
+#include "integrators/path_tracing/unbiased_paths.h"
 #include "integrators/register_parts.h"
 
 namespace mote::integrators {
@@ -114,6 +115,9 @@ class MoteLayers final : public Integrator {
     bool works_on_mean() const override { return true; }
     std::vector<Layer> layers(const Scene& scene) const override { return choose(scene).layers; }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::shared_ptr<const Integrator> control(const Scene& scene) const override {
+        return nested_.empty() ? unbiased_paths(scene, limits_) : nullptr;
+    }
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         const LayerChoice choice = choose(scene);
         std::vector<LayerFilter::Choice> filtered;
@@ -178,6 +182,7 @@ class MoteLayers final : public Integrator {
 
 void add_entries(std::vector<PlanEntry>& all, const std::vector<PlanEntry>& more, const std::string& type) {
     for (PlanEntry entry : more) {
+        if (entry.topic == "error") continue;  // of an image of this method alone
         entry.topic = type + ": " + entry.topic;
         all.push_back(std::move(entry));
     }
@@ -225,6 +230,7 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
             plan.error_unknown = method.integrator->type() + ": " + own.error_unknown;
         plan.costly.insert(plan.costly.end(), own.costly.begin(), own.costly.end());
     }
+    if (nested_.empty()) plan_control(plan, scene, requirements, limits_);
     return plan;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "integrators/path_tracing/path_estimator.h"
+#include "integrators/path_tracing/unbiased_paths.h"
 #include "integrators/register_parts.h"
 
 namespace mote::integrators {
@@ -35,6 +36,9 @@ class Volpath final : public Integrator {
         return transport_layers(scene.has_media(), bounded() ? "_bounded" : "");
     }
     Plan plan(const Scene&, const Requirements& requirements) const override;
+    std::shared_ptr<const Integrator> control(const Scene& scene) const override {
+        return unbiased_paths(scene, settings_.limits);
+    }
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         if (!scene.has_media()) return make_path_estimator<false>(scene, options, settings_);
         PathSettings settings = settings_;
@@ -79,6 +83,7 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
                  "requested: second edges are weighted by min(G*, b)/G*, the transport of bounded VPLs");
     plan_equiangular(plan, requirements);
     plan_caustics(plan, scene, requirements);
+    if (bounded()) plan_control(plan, scene, requirements, settings_.limits);
     return plan;
 }
 

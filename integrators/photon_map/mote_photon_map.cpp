@@ -9,6 +9,7 @@
 
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/plan_narrow_phases.h"
+#include "integrators/path_tracing/unbiased_paths.h"
 #include "integrators/photon_map/photon_map_settings.h"
 #include "integrators/register_parts.h"
 
@@ -29,6 +30,9 @@ class MotePhotonMap final : public Integrator {
         return transport_layers(scene.has_media());
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::shared_ptr<const Integrator> control(const Scene& scene) const override {
+        return unbiased_paths(scene, settings_.eye);
+    }
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         return make_photon_map_estimator(scene, options, settings_);
     }
@@ -68,6 +72,7 @@ Plan MotePhotonMap::plan(const Scene& scene, const Requirements& r) const {
                                    : "alpha is 1: they do not shrink, and the bias stays");
     plan_choice_of_lights(plan, scene);
     plan_medium_lights(plan, r);
+    plan_control(plan, scene, r, settings_.eye);
     return plan;
 }
 

@@ -6,6 +6,7 @@
 // bounded, also between glossy surfaces. In return light is blurred over the spheres: a bias that more passes
 // do not reduce, since each has spheres of the same size; more light paths a pass do.
 #include "integrators/eye_path/eye_path_parameters.h"
+#include "integrators/path_tracing/unbiased_paths.h"
 #include "integrators/register_parts.h"
 #include "integrators/spherical_lights/vsl_settings.h"
 
@@ -23,6 +24,9 @@ class MoteVsl final : public Integrator {
     std::string type() const override { return "mote_vsl"; }
     std::vector<Layer> layers(const Scene&) const override { return transport_layers(false, "_spherical"); }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::shared_ptr<const Integrator> control(const Scene& scene) const override {
+        return unbiased_paths(scene, settings_.eye);
+    }
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         if (scene.has_media())
             throw InputError(
@@ -61,6 +65,7 @@ Plan MoteVsl::plan(const Scene& scene, const Requirements& r) const {
                   "spherical lights are for surfaces; volpath and mote_vpl render media");
     else
         plan.leave_out("media", "no code for media runs", "the scene has none");
+    plan_control(plan, scene, r, settings_.eye);
     return plan;
 }
 

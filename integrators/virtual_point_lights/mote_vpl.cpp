@@ -15,6 +15,7 @@
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/plan_narrow_phases.h"
 #include "integrators/eye_path/transport_layers.h"
+#include "integrators/path_tracing/unbiased_paths.h"
 #include "integrators/register_parts.h"
 #include "integrators/virtual_point_lights/plan_selection.h"
 #include "integrators/virtual_point_lights/vpl_settings.h"
@@ -120,6 +121,9 @@ class MoteVpl final : public Integrator {
         return layers;
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::shared_ptr<const Integrator> control(const Scene& scene) const override {
+        return unbiased_paths(scene, settings_.eye);
+    }
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         return make_vpl_estimator(scene, options, settings_);
     }
@@ -219,6 +223,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
                   "a VPL cannot be connected through mirrors and glass; volpath renders it");
     plan_choice_of_lights(plan, scene);
     plan_medium_lights(plan, r);
+    plan_control(plan, scene, r, settings_.eye);
     return plan;
 }
 

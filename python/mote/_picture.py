@@ -135,7 +135,7 @@ class Picture(Mapping):
 
     @property
     def error_interval(self) -> Optional[Tuple[float, float]]:
-        """Ends of the interval of 95 % confidence of the relative RMSE, bias of filters included; None: not known."""
+        """Ends of the interval of 95 % confidence of the relative RMSE, bias included; None: not known."""
         text = self.metadata.get("errorInterval", "").split()
         return (float(text[0]), float(text[1])) if len(text) == 2 else None
 

@@ -26,7 +26,7 @@ def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seco
            callback: Optional[Callable[[Picture], Any]] = None, checkpoint: Union[str, Path, None] = None,
            checkpoint_every: float = 60.0, resume: bool = False, auxiliary: bool = False, denoise: str = "") -> Picture:
     """Renders until the first of these rules holds: so many passes, so many seconds (from the call on), a noise such as
-    0.02 (relative), or an error whose interval is below this, bias of filters included (for a scene loaded with
+    0.02 (relative), or an error whose interval is below this, bias included (for a scene loaded with
     define={"film.interval": True}, and a method whose error is known: docs/testing.md). Without any: the scene's sample_count of passes. Scene, seed and passes determine every bit of the
     picture, whatever the number of threads (0: one for every core).
 

@@ -94,7 +94,7 @@ struct OidnLibrary::Functions {
                              ": version 2 is needed");
     }
 
-    /// A filter with images of one size, run once.
+    /// A filter with images of one size.
     class Run {
       public:
         Run(const Functions& functions, Handle device, int width, int height)
@@ -196,17 +196,43 @@ void OidnLibrary::check(const std::string& what) const {
                      (message ? core::printable(message, 300) : "error " + std::to_string(error)));
 }
 
-std::vector<Rgb> OidnLibrary::denoised(const Picture& picture) const {
-    const Functions::Run run(*functions_, device_, picture.width, picture.height);
-    run.image("color", picture.colour);
-    run.image("albedo", picture.albedo);
-    if (!picture.albedo.empty()) run.image("normal", picture.normal);  // it takes no normal alone
-    run.flag("hdr");
-    if (picture.quality == Quality::balanced) run.quality(balanced_quality);
-    if (!picture.albedo.empty()) run.flag("cleanAux");
-    std::vector<Rgb> result = run.result();
-    check("a layer was not denoised");
+struct OidnLibrary::Series::Network {
+    const OidnLibrary& library;
+    int width, height;
+    bool features;
+    Quality quality;
+    Functions::Run run;
+};
+
+OidnLibrary::Series::Series(const OidnLibrary& library, int width, int height, bool features, Quality quality)
+    : network_(new Network{library, width, height, features, quality,
+                           Functions::Run(*library.functions_, library.device_, width, height)}) {
+    network_->run.flag("hdr");
+    if (quality == Quality::balanced) network_->run.quality(balanced_quality);
+    if (features) network_->run.flag("cleanAux");
+}
+OidnLibrary::Series::~Series() = default;
+OidnLibrary::Series::Series(Series&&) noexcept = default;
+
+std::vector<Rgb> OidnLibrary::Series::denoised(const Picture& picture) {
+    const Network& n = *network_;
+    if (picture.width != n.width || picture.height != n.height || picture.quality != n.quality ||
+        picture.albedo.empty() == n.features)
+        throw std::invalid_argument("the picture is not one of this series");
+    n.run.image("color", picture.colour);
+    n.run.image("albedo", picture.albedo);
+    if (n.features) n.run.image("normal", picture.normal);  // it takes no normal alone
+    std::vector<Rgb> result = n.run.result();
+    n.library.check("a layer was not denoised");
     return result;
+}
+
+OidnLibrary::Series OidnLibrary::series(int width, int height, bool features, Quality quality) const {
+    return {*this, width, height, features, quality};
+}
+
+std::vector<Rgb> OidnLibrary::denoised(const Picture& picture) const {
+    return series(picture.width, picture.height, !picture.albedo.empty(), picture.quality).denoised(picture);
 }
 
 std::vector<Rgb> OidnLibrary::denoised_feature(Feature which, int width, int height,

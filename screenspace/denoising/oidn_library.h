@@ -37,6 +37,9 @@ class OidnLibrary {
     };
     /// Throws InputError where the library fails.
     std::vector<core::Rgb> denoised(const Picture& picture) const;
+    class Series;
+    /// For pictures of one size, one quality and the same features.
+    Series series(int width, int height, bool features, Quality quality) const;
     enum class Feature { albedo, normal };
     std::vector<core::Rgb> denoised_feature(Feature which, int width, int height,
                                             std::span<const core::Rgb> values) const;
@@ -50,6 +53,23 @@ class OidnLibrary {
     std::unique_ptr<Functions> functions_;
     void *library_ = nullptr, *device_ = nullptr;
     std::string version_;
+};
+
+/// Denoises pictures one after the other. The library builds its network once, which takes as long as a small
+/// picture, and keeps its buffers until the end. For one thread at a time; the library must outlive it.
+class OidnLibrary::Series {
+  public:
+    ~Series();
+    Series(Series&&) noexcept;
+    /// As OidnLibrary::denoised(), to the bit. Throws std::invalid_argument for a picture of another size,
+    /// quality or set of features, and InputError where the library fails.
+    std::vector<core::Rgb> denoised(const Picture& picture);
+
+  private:
+    friend class OidnLibrary;
+    Series(const OidnLibrary& library, int width, int height, bool features, Quality quality);
+    struct Network;
+    std::unique_ptr<Network> network_;
 };
 
 }  // namespace mote::screenspace

@@ -24,7 +24,7 @@ class OwnFilter final : public ViewFilter {
   public:
     OwnFilter(const FilterFeatures& features, const LayerFilterSettings& settings)
         : features_(features), settings_(settings) {}
-    FilteredLayer filtered(const LayerToFilter& layer, CancelToken cancelled) const override {
+    FilteredLayer filtered(const LayerToFilter& layer, CancelToken cancelled) override {
         return filter_layer(features_, layer, settings_, cancelled);
     }
 

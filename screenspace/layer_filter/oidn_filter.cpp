@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "screenspace/denoising/variance_blend.h"
 #include "screenspace/layer_filter/view_filter.h"
@@ -36,7 +37,7 @@ class OidnFilter final : public ViewFilter {
         normal_ = clean(Feature::normal, f.shading_normal);
     }
 
-    FilteredLayer filtered(const LayerToFilter& layer, CancelToken cancelled) const override {
+    FilteredLayer filtered(const LayerToFilter& layer, CancelToken cancelled) override {
         FilteredLayer result{{layer.mean.begin(), layer.mean.end()}, {}};
         if (is_zero(layer.variance)) return result;
         cancelled.check();
@@ -46,21 +47,32 @@ class OidnFilter final : public ViewFilter {
         const std::vector<Rgb>& albedo = layer.kind == LayerKind::surface ? reflected_ : scattering_;
         const auto quality = layer.quality == FilterQuality::full ? OidnLibrary::Quality::high
                                                                   : OidnLibrary::Quality::balanced;
-        const std::vector<Rgb> denoised = blend_by_variance(
-            width_, height_, library_->denoised({width_, height_, colour, albedo, normal_, quality}), colour,
-            layer.variance, blend_radius, blend_deviations);
+        const std::vector<Rgb> denoised =
+            blend_by_variance(width_, height_, denoised({width_, height_, colour, albedo, normal_, quality}),
+                              colour, layer.variance, blend_radius, blend_deviations);
         for (std::size_t i = 0; i < denoised.size(); ++i)
             if (is_finite(layer.mean[i]) && is_finite(denoised[i]))
                 result.mean[i] = glm::max(denoised[i], glm::min(layer.mean[i], Rgb(0.0f)));
         return result;
     }
     double full_per_preview() const override { return OidnLibrary::high_per_balanced; }
+    void release() override { series_.reset(); }
 
   private:
+    /// By the network of the picture before where that has the same quality.
+    std::vector<Rgb> denoised(const OidnLibrary::Picture& picture) {
+        if (!series_ || quality_ != picture.quality)
+            series_.emplace(library_->series(width_, height_, !picture.albedo.empty(), picture.quality));
+        quality_ = picture.quality;
+        return series_->denoised(picture);
+    }
+
     std::shared_ptr<const OidnLibrary> library_;
     int width_, height_;
     /// Guides of the library: light that surfaces reflect and media scatter towards the eye, and normals.
     std::vector<Rgb> reflected_, scattering_, normal_;
+    std::optional<OidnLibrary::Series> series_;
+    OidnLibrary::Quality quality_ = OidnLibrary::Quality::high;
 };
 
 }  // namespace

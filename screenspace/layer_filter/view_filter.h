@@ -11,9 +11,12 @@ namespace mote::screenspace {
 class ViewFilter {
   public:
     virtual ~ViewFilter() = default;
-    /// Nowhere negative where the layer is not; pixels that are not finite stay as they are. The variance is
-    /// empty where it is not known. Throws Cancelled, and std::invalid_argument when sizes differ.
-    virtual FilteredLayer filtered(const LayerToFilter& layer, core::CancelToken cancelled) const = 0;
+    /// For one thread at a time. Nowhere negative where the layer is not; pixels that are not finite stay as
+    /// they are. The variance is empty where it is not known. Throws Cancelled, and std::invalid_argument
+    /// when sizes differ.
+    virtual FilteredLayer filtered(const LayerToFilter& layer, core::CancelToken cancelled) = 0;
+    /// Frees what filtered() keeps for the next layer.
+    virtual void release() {}
     /// Time of a layer at full quality over that for a preview, about.
     virtual double full_per_preview() const { return 1.0; }
 };

@@ -261,9 +261,38 @@ TEST_CASE("An interval of the error is stated where it was requested and is know
     CHECK(session::render(scene, one_thread).image.channels == with.image.channels);
 
     CHECK(unknown(session::render(scene, passes(3))) == "too few passes");
-    const Rendered of_other_method = session::render(scene_of("mote_vpl", 16, true), passes(16));
+    const Rendered of_other_method = session::render(scene_of("mote_bdpt", 16, true), passes(16));
     CHECK(!of_other_method.error);
     CHECK(!unknown(of_other_method).empty());
+}
+
+TEST_CASE("The error of a biased method is stated by control passes, the same on every way",
+          "[session][control]") {
+    for (const std::string type : {"mote_vpl", "mote_vsl", "mote_photon_map"}) {
+        CAPTURE(type);
+        const LoadedScene scene = scene_of(type, 32, true);
+        const Rendered whole = session::render(scene, passes(13));
+        REQUIRE(whole.error);
+        CHECK(whole.error->low < whole.error->high);
+        CHECK(whole.image.metadata.contains("errorInterval"));
+        CHECK(!session::render(scene_of(type, 32), passes(13)).error);
+
+        const TemporaryFolder folder;
+        RenderSettings settings = passes(6);
+        settings.checkpoint = folder.file("film.checkpoint"), settings.keep_checkpoint = true;
+        session::render(scene, settings);
+        settings.stop.passes = 13, settings.resume = true, settings.threads = 1;
+        const Rendered resumed = session::render(scene, settings);
+        CHECK(resumed.image.channels == whole.image.channels);
+        REQUIRE(resumed.error);
+        CHECK(resumed.error->high == whole.error->high);
+        CHECK(resumed.error->low == whole.error->low);
+    }
+    RenderSettings until;
+    until.threads = 2, until.stop.error = 0.2;
+    const Rendered rendered = session::render(scene_of("mote_vpl", 32, true), until);
+    REQUIRE(rendered.error);
+    CHECK(rendered.error->rule_high <= 0.2);
 }
 
 TEST_CASE("A limit on the error ends where the interval is below it, with or without previews",
@@ -273,7 +302,7 @@ TEST_CASE("A limit on the error ends where the interval is below it, with or wit
     settings.threads = 2, settings.stop.error = 0.02;
     const Rendered rendered = session::render(scene, settings);
     REQUIRE(rendered.error);
-    CHECK(rendered.error->high <= 0.02);
+    CHECK(rendered.error->rule_high <= 0.02);
     CHECK(rendered.passes >= 8);
     struct Watching : session::RenderObserver {
         bool wants_previews() const override { return true; }
@@ -282,7 +311,7 @@ TEST_CASE("A limit on the error ends where the interval is below it, with or wit
     } watching;
     CHECK(session::render(scene, settings, watching).passes == rendered.passes);
     CHECK_THROWS_AS(session::render(scene_of("path"), settings), core::InputError);
-    CHECK_THROWS_AS(session::render(scene_of("mote_vpl", 16, true), settings), core::InputError);
+    CHECK_THROWS_AS(session::render(scene_of("mote_bdpt", 16, true), settings), core::InputError);
 }
 
 TEST_CASE("A render with halves continues to the same bits", "[session][resume][halves]") {

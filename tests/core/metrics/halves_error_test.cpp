@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "core/math/random.h"
+#include "core/render/stop_clock.h"
 #include "tests/support/catch.h"
 
 using namespace mote::core;
@@ -114,6 +115,65 @@ Coverage coverage(const Filter& filter, std::uint64_t seeds, float shared = 0.0f
     return result;
 }
 
+/// The noise of passes, four times that of noisy(), summed up to a look of a rule.
+struct Passes {
+    static constexpr float loud = 4.0f;
+    Image a{pixels, Rgb(0.0f)}, b{pixels, Rgb(0.0f)};  ///< of the two halves
+    std::uint32_t count = 0;                           ///< of both together
+
+    void add(const Image& mu, std::uint32_t until, std::uint64_t seed) {
+        const float size = loud * std::sqrt(0.5f * float(until - count));
+        for (Image* half : {&a, &b}) {
+            const Image noise = noisy(mu, hash_keys(seed, until, half == &b));
+            for (std::size_t p = 0; p < pixels; ++p) (*half)[p] += size * (noise[p] - mu[p]);
+        }
+        count = until;
+    }
+    Image mean(const Image& mu, const Image& noise) const {
+        Image result(pixels);
+        for (std::size_t p = 0; p < pixels; ++p) result[p] = mu[p] + noise[p] / (0.5f * float(count));
+        return result;
+    }
+};
+
+/// Shares of renders that a limit on an end of the interval has ended although their error is above it.
+struct Broken {
+    double by_interval = 0.0;  ///< limit on PictureError::high
+    double by_rule = 0.0;      ///< limit on PictureError::rule_high
+};
+
+/// Looks of the render driver at a filter whose bias is just above the limit: no render should end.
+Broken broken_limits(std::uint64_t seeds) {
+    constexpr std::uint32_t last = 512;
+    const Image mu = truth();
+    const RelativeWeights weights = relative_weights(mu);
+    const double limit = 0.97 * relative_error(boxed(mu, 2), mu, weights).error;
+    Broken broken;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        Passes passes;
+        bool by_interval = false, by_rule = false;
+        for (std::uint32_t n = noise_rule_from; n <= last && !(by_interval && by_rule); ++n) {
+            if (!filtered_noise_is_due(n)) continue;
+            passes.add(mu, n, seed);
+            const Image a = passes.mean(mu, passes.a), b = passes.mean(mu, passes.b), fa = boxed(a, 2),
+                        fb = boxed(b, 2);
+            Image picture(pixels), variance(pixels);
+            for (std::size_t p = 0; p < pixels; ++p) {
+                picture[p] = 0.5f * (fa[p] + fb[p]);
+                variance[p] = sqr(Passes::loud * deviation(p)) * mu[p] * mu[p] / (0.5f * float(n));
+            }
+            const PictureError said =
+                halves_error({PictureHalf{a, fa, variance}, PictureHalf{b, fb, variance}}, picture, weights,
+                             width, height)
+                    .of_picture();
+            by_interval |= said.high <= limit, by_rule |= said.rule_high <= limit;
+        }
+        broken.by_interval += by_interval ? 1.0 / double(seeds) : 0.0;
+        broken.by_rule += by_rule ? 1.0 / double(seeds) : 0.0;
+    }
+    return broken;
+}
+
 /// 95 % +- 3 standard deviations of a share of so many seeds.
 constexpr std::uint64_t seeds = 600;
 const double within = 3.0 * std::sqrt(0.95 * 0.05 / double(seeds));
@@ -131,6 +191,16 @@ TEST_CASE("The interval of a filtered picture contains its error in 95 of 100 se
         CHECK(c.contained < 0.95 + within);
         CHECK(std::fabs(c.surprise) < 4.0);
     }
+}
+
+TEST_CASE("A rule that is evaluated again and again breaks its limit in 5 of 100 renders at most",
+          "[metrics][halves][coverage][statistics]") {
+    constexpr std::uint64_t renders = 200;
+    const double deviation_of_share = std::sqrt(0.05 * 0.95 / double(renders));
+    const Broken broken = broken_limits(renders);
+    CHECK(broken.by_rule < 0.05 + 3.0 * deviation_of_share);
+    // Planted: by the interval of each look, of which the lowest counts.
+    CHECK(broken.by_interval > 0.05 + 3.0 * deviation_of_share);
 }
 
 TEST_CASE("An interval that ignores bias is found out", "[metrics][halves][coverage][planted]") {
