@@ -15,34 +15,43 @@
 // the variance of a stratified sample from successive differences, which has the noise of the control passes
 // in it and that of the choice of pixels.
 //
-// The light that weights are relative to is the image's, scaled so that it is as bright as the control passes
-// at the sampled pixels: light that a bound removes would be missing in the norm as well.
+// Weights are relative to the light, of which a biased image misses some, and in some places more than in
+// others: the image's is scaled block by block so that it is as bright as the control passes in the 5 x 5
+// blocks around, without the block itself, whose control passes would else err as its weight does.
 #pragma once
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "core/metrics/halves_error.h"
 
 namespace mote::core {
 
-/// A sampled pixel.
+/// Size of a block [pixels].
+inline constexpr int control_block_width = 4, control_block_height = 2;
+
+/// The sampled pixel of a block.
 struct ControlSample {
     std::size_t pixel = 0;  ///< index in the image
     double pixels = 0.0;    ///< number in its block
     Rgb a, b;               ///< means of the control passes' halves
 };
+/// Samples of all blocks, row by row.
+struct ControlSamples {
+    int columns = 0, rows = 0;  ///< numbers of blocks
+    std::vector<ControlSample> blocks;
+};
 
 /// Fewer samples say too little about their spread: no error is stated.
 inline constexpr std::size_t min_control_samples = 30;
 
-/// Brightness of the control passes over that of the image, at the samples; 1 where either is black.
-double control_scale(std::span<const Rgb> image, const RelativeWeights& weights,
-                     std::span<const ControlSample> samples);
+/// Weights of an image as bright as the control passes, from `weights`, its own; `width`: of the image.
+RelativeWeights control_weights(std::span<const Rgb> image, const RelativeWeights& weights,
+                                const ControlSamples& samples, int width);
 
-/// `samples`: in an order in which neighbours of the image follow each other. `weights`: of the image, scaled
-/// by control_scale(). Not known with fewer than min_control_samples.
+/// `weights`: control_weights(). Not known with fewer than min_control_samples.
 PictureError control_error(std::span<const Rgb> image, const RelativeWeights& weights,
-                           std::span<const ControlSample> samples);
+                           const ControlSamples& samples);
 
 }  // namespace mote::core

@@ -40,6 +40,7 @@ class ControlPasses {
     void sample_pixels(int width, int height, std::uint64_t seed);
 
     std::unique_ptr<PixelFilter> filter_;
+    double work_fraction_;       ///< of the image's passes
     int columns_, rows_;         ///< of blocks
     std::vector<Block> blocks_;  ///< row by row
     std::vector<Vec2> corners_;  ///< of the sampled pixels

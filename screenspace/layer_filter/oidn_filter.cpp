@@ -47,9 +47,9 @@ class OidnFilter final : public ViewFilter {
         const std::vector<Rgb>& albedo = layer.kind == LayerKind::surface ? reflected_ : scattering_;
         const auto quality = layer.quality == FilterQuality::full ? OidnLibrary::Quality::high
                                                                   : OidnLibrary::Quality::balanced;
-        const std::vector<Rgb> denoised =
-            blend_by_variance(width_, height_, denoised({width_, height_, colour, albedo, normal_, quality}),
-                              colour, layer.variance, blend_radius, blend_deviations);
+        const std::vector<Rgb> denoised = blend_by_variance(
+            width_, height_, by_network({width_, height_, colour, albedo, normal_, quality}), colour,
+            layer.variance, blend_radius, blend_deviations);
         for (std::size_t i = 0; i < denoised.size(); ++i)
             if (is_finite(layer.mean[i]) && is_finite(denoised[i]))
                 result.mean[i] = glm::max(denoised[i], glm::min(layer.mean[i], Rgb(0.0f)));
@@ -59,8 +59,8 @@ class OidnFilter final : public ViewFilter {
     void release() override { series_.reset(); }
 
   private:
-    /// By the network of the picture before where that has the same quality.
-    std::vector<Rgb> denoised(const OidnLibrary::Picture& picture) {
+    /// Denoised by the network of the picture before where that has the same quality.
+    std::vector<Rgb> by_network(const OidnLibrary::Picture& picture) {
         if (!series_ || quality_ != picture.quality)
             series_.emplace(library_->series(width_, height_, !picture.albedo.empty(), picture.quality));
         quality_ = picture.quality;

@@ -40,27 +40,42 @@ Image biased(const Image& mu, std::uint64_t seed, float removed) {
     return image;
 }
 
-/// One pixel of each block of 4 x 2, row by row and back, with a standard deviation of a half of 60 %.
+/// One pixel of each block, with a standard deviation of a half of 60 %.
 /// `follows`: the share of the image's own error that the control passes have as well; a planted fault.
-std::vector<ControlSample> sampled(const Image& mu, const Image& image, std::uint64_t seed, float follows) {
-    std::vector<ControlSample> samples;
-    for (int row = 0; row < height / 2; ++row)
-        for (int i = 0; i < width / 4; ++i) {
-            const int column = row % 2 == 0 ? i : width / 4 - 1 - i;
+ControlSamples sampled(const Image& mu, const Image& image, std::uint64_t seed, float follows) {
+    ControlSamples samples{width / control_block_width, height / control_block_height, {}};
+    for (int row = 0; row < samples.rows; ++row)
+        for (int column = 0; column < samples.columns; ++column) {
             Rng rng(hash_keys(seed, row, column));
-            const auto place = std::size_t(rng.next_float() * 8.0f);
-            const std::size_t p =
-                std::size_t(2 * row + int(place / 4)) * width + std::size_t(4 * column) + place % 4;
+            const int x = 4 * column + int(rng.next_float() * 4.0f),
+                      y = 2 * row + int(rng.next_float() * 2.0f);
+            const auto p = std::size_t(y * width + x);
             const Rgb mean = mu[p] + follows * (image[p] - mu[p]);
             const float a = 1.0f + 0.6f * normal(rng), b = 1.0f + 0.6f * normal(rng);
-            samples.push_back({p, 8.0, a * mean, b * mean});
+            samples.blocks.push_back({p, 8.0, a * mean, b * mean});
+        }
+    return samples;
+}
+
+PictureError stated(const Image& image, const ControlSamples& samples) {
+    RelativeWeights weights = relative_weights(image);
+    weights.noise_norm = weights.norm;
+    return control_error(image, control_weights(image, weights, samples, width), samples);
+}
+
+/// The light of one pixel of each block, times `a` and `b`.
+ControlSamples exact(const Image& mu, float a = 1.0f, float b = 1.0f) {
+    ControlSamples samples{width / control_block_width, height / control_block_height, {}};
+    for (int row = 0; row < samples.rows; ++row)
+        for (int column = 0; column < samples.columns; ++column) {
+            const auto p = std::size_t(2 * row * width + 4 * column);
+            samples.blocks.push_back({p, 8.0, a * mu[p], b * mu[p]});
         }
     return samples;
 }
 
 struct Coverage {
     double contained = 0.0, above = 0.0;  ///< shares of seeds: within, and above the upper end
-    double width = 0.0;                   ///< mean of high^2 - low^2 over error^2
 };
 
 Coverage coverage(float removed, std::uint64_t seeds, float follows = 0.0f) {
@@ -69,17 +84,10 @@ Coverage coverage(float removed, std::uint64_t seeds, float follows = 0.0f) {
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         const Image image = biased(mu, seed, removed);
         const double error = relative_error(image, mu, relative_weights(mu)).error;
-        const auto samples = sampled(mu, image, hash_keys(seed, 1), follows);
-        Image bright = image;
-        const auto scale = float(control_scale(image, relative_weights(image), samples));
-        for (Rgb& light : bright) light *= scale;
-        RelativeWeights weights = relative_weights(bright);
-        weights.noise_norm = weights.norm;
-        const PictureError said = control_error(image, weights, samples);
+        const PictureError said = stated(image, sampled(mu, image, hash_keys(seed, 1), follows));
         const double share = 1.0 / double(seeds);
         if (error >= said.low && error <= said.high) result.contained += share;
         if (error > said.high) result.above += share;
-        result.width += share * (said.high * said.high - said.low * said.low) / (error * error);
     }
     return result;
 }
@@ -107,12 +115,7 @@ TEST_CASE("An image that is off by a factor has that error, and an interval with
     const Image mu = truth();
     Image half = mu;
     for (Rgb& light : half) light *= 0.5f;
-    std::vector<ControlSample> samples;
-    for (std::size_t p = 0; p < pixels; p += 8) samples.push_back({p, 8.0, mu[p], mu[p]});
-    CHECK(control_scale(half, relative_weights(half), samples) == Approx(2.0));
-    RelativeWeights weights = relative_weights(mu);
-    weights.noise_norm = weights.norm;
-    const PictureError said = control_error(half, weights, samples);
+    const PictureError said = stated(half, exact(mu));
     // Every pixel is half as bright as its light; sampled pixels have the weights of their blocks nearly.
     CHECK(said.error == Approx(0.5).epsilon(0.01));
     CHECK(said.low <= said.error);
@@ -122,23 +125,19 @@ TEST_CASE("An image that is off by a factor has that error, and an interval with
 
 TEST_CASE("Few samples, and a black image, have no error from control passes", "[metrics][control]") {
     const Image mu = truth(), black(pixels, Rgb(0.0f));
-    std::vector<ControlSample> samples(min_control_samples - 1, ControlSample{7, 8.0, mu[7], mu[7]});
-    RelativeWeights weights = relative_weights(mu);
-    weights.noise_norm = weights.norm;
+    ControlSamples samples = exact(mu);
+    samples.columns = int(min_control_samples) - 1, samples.rows = 1;
+    samples.blocks.resize(min_control_samples - 1);
+    const RelativeWeights weights{std::vector<double>(pixels, 1.0), 1.0, 1.0};
     CHECK(std::isinf(control_error(mu, weights, samples).high));
-    samples.push_back(samples.back());
+    samples.blocks.push_back(samples.blocks.back()), ++samples.columns;
     CHECK(std::isfinite(control_error(mu, weights, samples).high));
-    CHECK(std::isinf(control_error(black, relative_weights(black), samples).high));
-    CHECK(control_scale(black, relative_weights(black), samples) == 1.0);
+    CHECK(std::isinf(stated(black, exact(mu)).high));
 }
 
 TEST_CASE("An upper end is never zero", "[metrics][control]") {
     const Image mu = truth();
-    std::vector<ControlSample> samples;  // halves that err in opposite directions, by chance
-    for (std::size_t p = 0; p < pixels; p += 8) samples.push_back({p, 8.0, 1.1f * mu[p], 0.9f * mu[p]});
-    RelativeWeights weights = relative_weights(mu);
-    weights.noise_norm = weights.norm;
-    const PictureError said = control_error(mu, weights, samples);
+    const PictureError said = stated(mu, exact(mu, 1.1f, 0.9f));  // halves that err in opposite directions
     CHECK(said.error == 0.0);
     CHECK(said.high > 0.0);
 }

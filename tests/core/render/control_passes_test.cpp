@@ -96,7 +96,7 @@ TEST_CASE("Control passes sample one pixel of each block of 4 x 2, the same in e
     CHECK(other.passes[0] != unbiased.passes[0]);
 }
 
-TEST_CASE("Control passes take a sixteenth of the counted work, however it is interrupted", "[control]") {
+TEST_CASE("Control passes take a twentieth of the counted work, however it is interrupted", "[control]") {
     const auto scene = fake_scene(width, height);
     const std::atomic<bool> never{false};
     const auto passes_after = [&](const std::vector<double>& works) {
@@ -108,9 +108,9 @@ TEST_CASE("Control passes take a sixteenth of the counted work, however it is in
         return control.passes();
     };
     const double pass = 10.0 * 11.0;  // closest hits
-    CHECK(passes_after({16.0 * 7.0 * pass}) == 7);
-    CHECK(passes_after({16.0 * 3.0 * pass, 16.0 * 4.0 * pass}) == 7);
-    CHECK(passes_after({16.0 * 7.9 * pass}) == 7);
+    CHECK(passes_after({20.0 * 7.0 * pass}) == 7);
+    CHECK(passes_after({20.0 * 3.0 * pass, 20.0 * 4.0 * pass}) == 7);
+    CHECK(passes_after({20.0 * 7.9 * pass}) == 7);
     CHECK(passes_after({0.0}) == 2);
 }
 
