@@ -7,7 +7,7 @@ namespace mote::core {
 
 namespace {
 
-constexpr int reach = 2;           ///< of neighbours: 5 x 5 blocks
+constexpr int reach = 1;           ///< of neighbours: 3 x 3 blocks
 constexpr double max_scale = 8.0;  ///< of light that an image misses; beyond, its weights say no more
 
 /// Brightness of the control passes over that of the image, around each block.
