@@ -24,7 +24,7 @@ def runs_of(file):
     found = {}
     for row in csv.DictReader(lines):
         run = {k: float(row[k]) for k in ("wall_s", "error", "error_se", "bias", "bias_se")}
-        found.setdefault(row["method"], []).append({**run, "passes": row["passes"]})
+        found.setdefault(row["method"], []).append({**run, "seed": row["seed"]})
     return found
 
 
@@ -59,7 +59,7 @@ def readme(runs):
         last = runs[method][-1]
         cells = f"{last['wall_s']:.1f} | {percent(last['error'], last['error_se'])} | {percent(last['bias'], last['bias_se'], '+')}"
         print(f"| {label} | {cells} |")
-        checks.append(f"{cells} = method: {method}, passes: {last['passes']}; wall_s; error; error_se; bias; bias_se")
+        checks.append(f"{cells} = method: {method}, seed: {last['seed']}; wall_s; error; error_se; bias; bias_se")
     print("\n".join(checks))
 
 
