@@ -1,4 +1,7 @@
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
+
+#include <cmath>
 
 #include "core/render/camera_ray.h"
 #include "gathering/photon_maps/progressive_radius.h"
@@ -55,8 +58,8 @@ class UpbpEstimator final : public Estimator {
         BidirectionalSettings s;
         s.limits = settings_.limits, s.heuristic = settings_.heuristic;
         s.all_connections = settings_.all_connections, s.connections = settings_.connections;
-        const double size = double(scene_.bounds().radius()),
-                     first = settings_.radius * (size > 0.0 ? size : 1.0);
+        const double size = double(scene_.bounds().radius());
+        const double first = settings_.radius * (size > 0.0 ? size : 1.0);
         const auto set = [&](Merge technique, bool used, int dimensions) {
             const double fraction = gathering::radius_fraction(pass, settings_.alpha, dimensions);
             s.merging.radius[std::size_t(technique)] = used ? first * fraction : 0.0;
@@ -73,8 +76,7 @@ class UpbpEstimator final : public Estimator {
                            std::vector<Subpath>& paths, std::vector<std::vector<Splat>>& splats) {
         const auto rows = [&](int begin, int end) {
             tbb::parallel_for(begin, end, [&](int y) {
-                if (context.cancelled) return;
-                trace_row(context, settings, y, paths, splats[std::size_t(y)]);
+                if (!context.cancelled) trace_row(context, settings, y, paths, splats[std::size_t(y)]);
             });
         };
         rows(0, 1);
@@ -86,13 +88,10 @@ class UpbpEstimator final : public Estimator {
     void require_memory(const std::vector<Subpath>& paths) const {
         double vertices = 0.0;
         for (int x = 0; x < options_.width; ++x) vertices += double(paths[std::size_t(x)].size());
-        const double each = vertices / double(options_.width) * LightVertices::bytes_per_vertex;
-        options_.memory.require(each * double(pixels()),
-                                "the vertices of " + std::to_string(pixels()) + " light subpaths",
-                                [&](double bytes) {
-                                    return std::to_string(std::int64_t(bytes / std::max(each, 1.0))) +
-                                           " light subpaths fit, one for each pixel";
-                                });
+        const double each = std::max(1.0, vertices / options_.width * LightVertices::bytes_per_vertex);
+        options_.memory.require(
+            each * double(pixels()), fmt::format("the vertices of {} light subpaths", pixels()),
+            [each](double bytes) { return fmt::format("{:.0f} subpaths fit", std::floor(bytes / each)); });
     }
     void trace_row(const PassContext& context, const BidirectionalSettings& settings, int y,
                    std::vector<Subpath>& paths, std::vector<Splat>& splats) {
@@ -129,9 +128,7 @@ class UpbpEstimator final : public Estimator {
             });
         });
     }
-    std::size_t index_of(int x, int y) const {
-        return std::size_t(y) * std::size_t(options_.width) + std::size_t(x);
-    }
+    std::size_t index_of(int x, int y) const { return std::size_t(y * options_.width + x); }
 
     const Scene& scene_;
     RenderOptions options_;
