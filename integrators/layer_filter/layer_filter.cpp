@@ -20,12 +20,12 @@ constexpr double work_of_layer = 180.0;
 /// Mean and its variance, by the passes alone: an earlier call, for a preview, may have replaced them.
 struct LayerOfPasses {
     std::vector<Rgb> mean;
-    std::vector<Rgb> variance;  ///< infinity after one pass
+    std::vector<Rgb> variance;  ///< infinity after fewer passes than it takes to know it
 };
 
-LayerOfPasses of_passes(Film& film, std::size_t layer) {
+LayerOfPasses of_passes(Film& film, std::size_t layer, std::uint32_t fewest) {
     film.set_mean(layer, {});
-    const bool known = film.pass_count(film.layers()[layer].part) > 1;
+    const bool known = film.pass_count(film.layers()[layer].part) >= fewest;
     return {film.mean(layer),
             known ? film.layer_variance_of_mean(layer) : std::vector<Rgb>(film.pixels(), Rgb(infinity))};
 }
@@ -150,7 +150,7 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
 }
 
 void LayerFilter::apply_to_mean(Film& film, const Choice& choice, CancelToken cancelled) {
-    const LayerOfPasses layer = of_passes(film, choice.layer);
+    const LayerOfPasses layer = of_passes(film, choice.layer, fewest_passes());
     auto filtered = filter_->filtered({layer.mean, layer.variance, choice.kind}, cancelled);
     film.set_mean(choice.layer, filtered.mean, filtered.variance);
     variances_.push_back(std::move(filtered.variance));
@@ -207,7 +207,7 @@ void LayerFilter::apply_to_sum(Film& film, const Kind& kind, screenspace::Filter
         return filtered_sum(*filter_, std::move(all), kind.kind, quality, cancelled);
     };
     if (!has_halves(film)) {
-        const auto means = shown([&](std::size_t layer) { return of_passes(film, layer); });
+        const auto means = shown([&](std::size_t layer) { return of_passes(film, layer, fewest_passes()); });
         for (std::size_t i = 0; i < layers.size(); ++i) film.set_mean(layers[i], means[i]);
         return;
     }

@@ -39,8 +39,9 @@ class LayerFilter {
 
     /// Sets the means of the layers to the filtered ones: of each half of the passes by itself where the film
     /// keeps them and has two passes a half, so that its error is known. Of a layer of one pass the variance
-    /// is not known: OpenImageDenoise smooths it as far as it likes, our own filter leaves all layers as they
-    /// are. Throws std::invalid_argument where a layer has no squares, and Cancelled.
+    /// is not known, and of two or three hardly: OpenImageDenoise smooths it as far as it likes, our own
+    /// filter leaves all layers of one pass as they are. Throws std::invalid_argument where a layer has no
+    /// squares, and Cancelled.
     ///
     /// After little work OpenImageDenoise takes the sum of all layers of a kind at once, each of which keeps
     /// its fraction of a pixel: more passes are then worth more than a run for each layer. Work is counted,
@@ -79,6 +80,10 @@ class LayerFilter {
     };
     std::vector<Kind> kinds(const core::Film& film) const;
     bool joins_layers(const core::Film& film) const;
+    /// Passes from which on a variance is used. Around a bright pixel that one of two passes has, the
+    /// denoised layer differs from the mean by more than the noise of the dark pixels there, and would be
+    /// mixed with it in rings.
+    std::uint32_t fewest_passes() const { return has_variance_ ? 2 : 4; }
     void find_features(core::CancelToken cancelled);
     void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_mean(core::Film& film, const Choice& choice, core::CancelToken cancelled);
