@@ -20,7 +20,7 @@ constexpr double work_of_layer = 180.0;
 /// Mean and its variance, by the passes alone: an earlier call, for a preview, may have replaced them.
 struct LayerOfPasses {
     std::vector<Rgb> mean;
-    std::vector<Rgb> variance;  ///< infinity after fewer passes than it takes to know it
+    std::vector<Rgb> variance;  ///< infinity after too few passes
 };
 
 LayerOfPasses of_passes(Film& film, std::size_t layer, std::uint32_t fewest) {
