@@ -25,10 +25,8 @@ float SurfacePhotonMap::find_photons(const ScatteringVertex& receiver, const Den
 }
 
 Rgb SurfacePhotonMap::reflected(const Photon& photon, const ScatteringVertex& receiver, int max_depth) {
-    constexpr float min_normal_cosine = 0.5f;
     if (int(photon.depth) > max_depth) return Rgb(0.0f);
-    const Vec3 normal = receiver.hit.geometric_normal;
-    if (std::fabs(glm::dot(decode_normal(photon.normal_or_medium), normal)) < min_normal_cosine)
+    if (!photon_counts(decode_normal(photon.normal_or_medium), receiver.hit.geometric_normal))
         return Rgb(0.0f);
     const Vec3 wi = decode_direction(photon.towards_light);
     const float geometric = receiver.geometric_cosine(wi);

@@ -1,6 +1,7 @@
 // The photons on surfaces, and the radiance estimate from the nearest of them (Jensen 2001, Ch. 7).
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include "core/math/kd_tree.h"
@@ -13,6 +14,13 @@ struct DensityEstimate {
     std::size_t neighbours = 50;   ///< k
     float radius_fraction = 1.0f;  ///< of the distance of the k-th, in (0, 1]
 };
+
+/// True if a photon on a surface with one geometric normal counts where a receiver has the other: they are
+/// turned away by at most 60 degrees, or by that from the other side.
+inline bool photon_counts(const core::Vec3& photon_normal, const core::Vec3& normal) {
+    constexpr float min_normal_cosine = 0.5f;
+    return std::fabs(glm::dot(photon_normal, normal)) >= min_normal_cosine;
+}
 
 /// For estimates whose sum alone is wanted.
 struct IgnoreTerms {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "core/scene/transmittance_along.h"
+#include "gathering/photon_maps/surface_photon_map.h"
 #include "integrators/bidirectional/strategies.h"
 #include "integrators/upbp/light_vertices.h"
 
@@ -99,11 +100,8 @@ class Merges {
         const float geometric = z.scattering.geometric_cosine(wi);
         return geometric > 0.0f ? f / (geometric * y.scattering.stop_chance) : core::Rgb(0.0f);
     }
-    /// Surfaces turned more than 60 degrees away do not count.
     static bool same_side(const PathVertex& y, const PathVertex& z) {
-        constexpr float min_normal_cosine = 0.5f;
-        return std::fabs(glm::dot(y.scattering.hit.geometric_normal, z.scattering.hit.geometric_normal)) >=
-               min_normal_cosine;
+        return gathering::photon_counts(y.scattering.hit.geometric_normal, z.scattering.hit.geometric_normal);
     }
     /// sigma_t / sigma_s, 0 where nothing scatters.
     static core::Rgb spared_albedo(const PathVertex& z) {
