@@ -35,7 +35,7 @@ class UpbpEstimator final : public Estimator {
         image.finish_late();  // any light path may reach any pixel
         const BidirectionalSettings settings = settings_of(context.index);
         std::vector<std::vector<Splat>> splats(std::size_t(options_.height));
-        std::vector<Subpath> paths(pixels());
+        std::vector<Subpath> paths(std::size_t(options_.width));  // of the first row, until all have room
         if (!trace_light_paths(context, settings, paths, splats)) return false;
         add_splats(splats, context.filter, image);
         const LightVertices lights(paths, settings.merging);
@@ -81,6 +81,7 @@ class UpbpEstimator final : public Estimator {
         };
         rows(0, 1);
         require_memory(paths);
+        paths.resize(pixels());
         rows(1, options_.height);
         return !context.cancelled;
     }
@@ -88,7 +89,8 @@ class UpbpEstimator final : public Estimator {
     void require_memory(const std::vector<Subpath>& paths) const {
         double vertices = 0.0;
         for (int x = 0; x < options_.width; ++x) vertices += double(paths[std::size_t(x)].size());
-        const double each = std::max(1.0, vertices / options_.width * LightVertices::bytes_per_vertex);
+        const double each =
+            double(sizeof(Subpath)) + vertices / options_.width * LightVertices::bytes_per_vertex;
         options_.memory.require(
             each * double(pixels()), fmt::format("the vertices of {} light subpaths", pixels()),
             [each](double bytes) { return fmt::format("{:.0f} subpaths fit", std::floor(bytes / each)); });
@@ -128,7 +130,9 @@ class UpbpEstimator final : public Estimator {
             });
         });
     }
-    std::size_t index_of(int x, int y) const { return std::size_t(y * options_.width + x); }
+    std::size_t index_of(int x, int y) const {
+        return std::size_t(y) * std::size_t(options_.width) + std::size_t(x);
+    }
 
     const Scene& scene_;
     RenderOptions options_;
