@@ -61,12 +61,12 @@ CASES = [(shown, ""), (compared, ""), (plot("wall time", "relative RMSE"), ""),
          (without_bar, "no colour bar"), (nameless_bar, "no colour bar"), (two_titles, "lies on")]
 
 
-def found(draw):
-    """Faults of a figure of 1280 pixels."""
+def found(draw, width=1280):
+    """Faults of a figure of so many pixels."""
     with tempfile.TemporaryDirectory() as folder:
         gallery = Path(folder) / "docs/gallery"
         gallery.mkdir(parents=True)
-        canvas = Canvas(1280, TITLE + 300 + BAR + 60)
+        canvas = Canvas(width, TITLE + 300 + BAR + 60)
         draw(canvas)
         canvas.save(gallery / "figure.png")
         return list(check_figures.check(Path(folder)))
@@ -74,6 +74,7 @@ def found(draw):
 
 def main():
     judged = [(expected, found(draw)) for draw, expected in CASES]
+    judged += [("", found(draw, width)) for draw in (shown, compared) for width in (960, 1576)]
     failed = [f"expected '{expected}', found {what}" for expected, what in judged
               if (what if not expected else len(what) != 1 or expected not in what[0])]
     print("\n".join([*failed, f"{len(judged)} figures, {len(failed)} not judged as they should be"]))
