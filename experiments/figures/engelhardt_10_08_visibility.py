@@ -4,7 +4,7 @@
 Two steps of compensation with and without local visibility, all else the same and exact, down to the VPLs: in the smoke
 room, and beside a thin wall in thin fog with light on one side only, where light should bleed through if anywhere. What
 is left out works both ways: surfaces hide light, and they reflect it. The clean pictures, by `mote_layers`, are for
-the eye alone. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 4
+the eye alone. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 6
 minutes of one core, --quick 40 s.
 
     experiments/figures/engelhardt_10_08_visibility.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
