@@ -116,7 +116,7 @@ def bibliography(text):
 
 def main(out):
     shutil.rmtree(out, ignore_errors=True)
-    ignored = shutil.ignore_patterns("*.md", "site", "reference", "*.checks", "*.bib", "CMakeLists.txt")
+    ignored = shutil.ignore_patterns("*.md", "site", "reference", "*.checks", "*.figure.json", "*.bib", "CMakeLists.txt")
     shutil.copytree(DOCS, out, ignore=ignored)
     (out / "_static").mkdir(exist_ok=True)
     shutil.copy(HERE / "mote.css", out / "_static")

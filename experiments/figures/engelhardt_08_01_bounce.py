@@ -12,7 +12,7 @@ import sys
 
 import numpy as np
 from claims import Claims
-from micro_figures import BUNNY, CORNELL, IndirectView, micro, zoom
+from micro_figures import BUNNY, CORNELL, IndirectView, micro
 from panels import BAR, TITLE, Canvas, show, show_difference
 from renders import luminance, main, write_csv
 
@@ -50,26 +50,24 @@ def figure(mote, quick, output):
 
 
 LARGEST, LARGEST_BIAS = 0.15, 0.05
+PANEL = 400  # pixels that a panel is wide
 SMOOTHED = ("away from edges pixels of this size blur nothing, and light that is shared by neighbours is smoother than that of one buffer "
             "each; with few pixels it holds")
 
 
 def draw(panels, output):
-    heights = [view.truth.shape[0] * zoom(view.truth.shape[1]) for _, view, _, _ in panels]
-    widths = [view.truth.shape[1] * zoom(view.truth.shape[1]) for _, view, _, _ in panels]
-    canvas = Canvas(5 * max(widths) + 60, sum(heights) + len(panels) * (TITLE + BAR + 10) + 10)
+    """By scene two lines: `path` and the methods, and below each method what it differs by."""
+    heights = [PANEL * view.truth.shape[0] // view.truth.shape[1] for _, view, _, _ in panels]
+    canvas = Canvas(3 * (PANEL + 10) + 10, sum(2 * (height + TITLE + 10) + BAR + 10 for height in heights))
     y = TITLE
-    for (title, view, pictures, error), height, width in zip(panels, heights, widths):
+    for (title, view, pictures, error), height in zip(panels, heights):
         exposure = 0.6 / np.percentile(luminance(view.truth), 90)
-        images = [(f"{n}: {error[n]:.1%}", view.light(p), None) for n, p in pictures.items()]
-        images += [(f"{title}: path", view.truth, None)] + [(f"{n}, difference", None, view.light(p) - view.truth) for n, p in pictures.items()]
-        for k, (text, image, difference) in enumerate(images):
-            axes = canvas.panel(10 + k * (width + 10), y, width, height)
-            if difference is None:
-                show(axes, image, exposure, text)
-            else:
-                show_difference(axes, difference, exposure, 3, text)
-        y += height + TITLE + BAR + 10
+        show(canvas.panel(10, y, PANEL, height), view.truth, exposure, f"{title}: path")
+        for k, (name, picture) in enumerate(pictures.items(), 1):
+            x, light = 10 + k * (PANEL + 10), view.light(picture)
+            show(canvas.panel(x, y, PANEL, height), light, exposure, f"{name}: {error[name]:.1%}")
+            show_difference(canvas.panel(x, y + height + TITLE + 10, PANEL, height), light - view.truth, exposure, 3, "difference")
+        y += 2 * (height + TITLE + 10) + BAR + 10
     canvas.save(output.with_suffix(".png"))
 
 

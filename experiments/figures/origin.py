@@ -81,6 +81,11 @@ def chunks(data):
         at += 12 + size
 
 
+def pixels(path):
+    """A digest of what a PNG file shows, without its text."""
+    return hashlib.sha256(b"".join(data for kind, data in chunks(Path(path).read_bytes()) if kind in (b"IHDR", b"IDAT"))).hexdigest()[:16]
+
+
 def png_text(path):
     """Entries of the text chunks of a PNG file, by name."""
     text = {}

@@ -27,8 +27,7 @@ class Canvas:
         return self.figure.add_axes([x / self.width, 1 - (y + height) / self.height, width / self.width, height / self.height])
 
     def save(self, path):
-        self.figure.savefig(path, dpi=DPI)
-        plt.close(self.figure)
+        plotting.save(self.figure, path)
 
 
 def clean(mote, scene, settings, passes, name="clean"):
@@ -43,8 +42,13 @@ def cleanest(mote, scene, settings, passes, name="clean", seeds=3):
                       for s in range(1, seeds + 1)], axis=0)
 
 
+def letters(figure):
+    """Size [points] that is at least 9 points where the figure is shown 960 pixels wide, 10 inches of a screen."""
+    return max(11, 0.91 * figure.get_figwidth())
+
+
 def title(axes, text, color="black"):
-    axes.set_title(text, fontsize=11, pad=5, color=color)
+    axes.set_title(text, fontsize=letters(axes.figure), pad=5, color=color)
 
 
 def show(axes, image, exposure, text=None):
@@ -65,7 +69,7 @@ def show_difference(axes, difference, exposure, times, text=None):
     bar = figure.add_axes([box.x0, box.y0 - 15 * pixel, box.width, 10 * pixel])
     wide = box.width * DPI * figure.get_figwidth() > 380
     plotting.difference(axes, exposure * luminance(difference), 1 / times, "luminance difference / white" if wide else "difference / white", bar)
-    bar.tick_params(labelsize=11, length=3, pad=2)
+    bar.tick_params(labelsize=letters(figure), length=3, pad=2)
     axes.set_aspect("auto")
     if text:
         title(axes, text)

@@ -1,12 +1,13 @@
 """Plots of the gallery for a talk: one colour a method, letters of at least 9 points at 960 pixels, labels at the lines and inside the
 canvas, the measure named on each axis, signed differences in blue and red with a colour bar.
 
-tests/pages/check_figures.py checks these in the SVG files of docs/gallery; save() writes an SVG beside each PNG.
+tests/pages/check_figures.py checks these in docs/gallery: in SVG files, and in what save() writes beside each PNG (layout.py).
 """
 from pathlib import Path
 
 import matplotlib
 matplotlib.use("Agg")
+import layout
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
@@ -92,9 +93,11 @@ def difference(axes, values, scale, measure, below=None):
 
 
 def save(made, path):
-    """As PNG, or SVG by the suffix; without the date."""
+    """As PNG with its labels beside it (layout.py), or SVG by the suffix; without the date."""
     metadata = {"Date": None} if str(path).endswith(".svg") else {}
     made.savefig(path, dpi=DPI, metadata=metadata)
+    if not metadata:
+        layout.write(made, path)
     plt.close(made)
     if metadata:  # matplotlib leaves spaces at the ends of lines
         text = Path(path).read_text(encoding="utf-8")

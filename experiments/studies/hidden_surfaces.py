@@ -19,9 +19,10 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+import plotting
 from claims import Claims
 from measure import series_error
-from renders import compensation, luminance, main, mean_and_error, show, show_difference, write_csv
+from renders import compensation, luminance, main, mean_and_error, show, write_csv
 
 ADDED = "compensation_surface"
 BOARDS = Path(__file__).resolve().parent / "hidden_surfaces.xml"
@@ -146,7 +147,8 @@ def plot(plots, path):
             found = sum(result[f"{n} layers"]["images"]) / 2
             show(axis, found, exposure, f"{n} layer{'s' * (n > 1)}, {result[f'{n} layers']['share']:.0%}")
         difference = sum(result["4 layers"]["images"]) / 2 - exact
-        show_difference(line[4], difference, exposure, "with 4 layers: green missing, red too much")
+        plotting.difference(line[4], exposure * luminance(difference), 1, "luminance difference / white")
+        line[4].set_title("with 4 layers", fontsize=9)
     figure.tight_layout()
     figure.savefig(path, dpi=100)
 

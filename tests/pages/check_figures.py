@@ -1,26 +1,36 @@
 #!/usr/bin/env python3
-"""Can the plots of docs be read on a wall? Checks each SVG of docs/gallery:
+"""Can the figures of docs be read on a wall? Checks each SVG of docs/gallery, and each PNG by what was written beside it when it was
+plotted (NAME.figure.json, experiments/figures/layout.py):
 
-- no label reaches out of the canvas, and none is smaller than 9 points where the plot is 960 pixels wide;
-- two axes are named, one of them by a measure (MEASURES);
+- no label reaches out of the canvas, and none is smaller than 9 points where the figure is 960 pixels wide;
+- two axes of a plot are named, each by a measure (MEASURES);
 - labels of two lines do not lie on each other;
 - a signed difference (id "difference") has a colour bar (id "colour bar") whose label names a measure.
+
+A PNG without such a file is named, with a digest of its pixels and the reason, in OLD: once it is plotted anew it has to leave the list,
+which is no longer than MAX_OLD.
 
 Widths of letters are those of DejaVu Sans, the widest of the fonts that browsers choose here.
 
     tests/pages/check_figures.py ROOT
 """
+import json
 import math
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 from typing import NamedTuple
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "experiments" / "figures"))
+from origin import pixels
 from pages import run
 
 MIN_POINTS, SHOWN_WIDTH = 9, 960
 MEASURES = ("relative RMSE", "relMSE", "bias", "difference", "seconds", "time", "luminance", "radiance", "lights", "method")
 WIDE, NARROW = 0.636, {**dict.fromkeys("ijl.,:;'|!", 0.33), **dict.fromkeys("frt-()[] /", 0.40), **dict.fromkeys("mwMW%", 0.95)}
+NO_BAR = "a difference has no colour bar that names its measure"
+OLD, MAX_OLD = "tests/pages/figures_without_labels.txt", 39
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -91,40 +101,89 @@ def overlap(a, b):
     return min((min(a[i + 2], b[i + 2]) - max(a[i], b[i])) / max(1e-9, min(a[i + 2] - a[i], b[i + 2] - b[i])) for i in (0, 1))
 
 
-def faults_of(text):
-    root = ElementTree.fromstring(text)
-    _, _, width, height = map(float, root.get("viewBox").split())
-    labels = list(labels_below(root, (1, 0, 0, 1, 0, 0), {}))
+def label_faults(labels, width):
     for label in labels:
-        left, top, right, bottom = label.box
-        if left < 0 or top < 0 or right > width or bottom > height:
-            yield f"'{label.text}' reaches out of the canvas"
         points = label.size * SHOWN_WIDTH / width * 72 / 96
         if points < MIN_POINTS - 0.01:
             yield f"'{label.text}' has {points:.1f} points at {SHOWN_WIDTH} pixels, less than {MIN_POINTS}"
     words = [label for label in labels if re.search(r"[A-Za-z]{3}", label.text)]
-    named = [label for label in words if any(measure in label.text for measure in MEASURES)]
-    if not any(label.box[3] - label.box[1] > label.box[2] - label.box[0] for label in named):
-        yield "no vertical axis is named by a measure"
-    if not any(label.box[3] > 0.6 * height for label in named):
-        yield "no horizontal axis is named by a measure"
     for i, a in enumerate(words):
         for b in words[:i]:
             if overlap(a.box, b.box) > 0.3:
                 yield f"'{a.text}' lies on '{b.text}'"
+
+
+def outside(labels, width, height):
+    for label in labels:
+        left, top, right, bottom = label.box
+        if left < 0 or top < 0 or right > width or bottom > height:
+            yield f"'{label.text}' reaches out of the canvas"
+
+
+def names_measure(text):
+    return any(measure in text for measure in MEASURES)
+
+
+def svg_faults(text):
+    root = ElementTree.fromstring(text)
+    _, _, width, height = map(float, root.get("viewBox").split())
+    labels = list(labels_below(root, (1, 0, 0, 1, 0, 0), {}))
+    yield from outside(labels, width, height)
+    yield from label_faults(labels, width)
+    named = [label for label in labels if names_measure(label.text)]
+    if not any(label.box[3] - label.box[1] > label.box[2] - label.box[0] for label in named):
+        yield "no vertical axis is named by a measure"
+    if not any(label.box[3] > 0.6 * height for label in named):
+        yield "no horizontal axis is named by a measure"
     ids = {element.get("id"): element for element in root.iter() if element.get("id")}
     if "difference" in ids:
         bar = ids.get("colour bar")
-        said = " ".join(bar.itertext()) if bar is not None else ""
-        if not any(measure in said for measure in MEASURES):
-            yield "a difference has no colour bar that names its measure"
+        if not names_measure(" ".join(bar.itertext()) if bar is not None else ""):
+            yield NO_BAR
+
+
+def png_faults(path, beside):
+    layout = json.loads(beside.read_text(encoding="utf-8"))
+    if layout["pixels"] != pixels(path):
+        yield f"{beside.name} is that of another picture"
+    labels = [Label(label["text"], label["size"], tuple(label["box"])) for label in layout["labels"]]
+    yield from outside(labels, *layout["size"])
+    yield from label_faults(labels, layout["size"][0])
+    for side, name in (("y", "vertical"), ("x", "horizontal")):
+        if layout["axes"] and not any(names_measure(axes[side]) for axes in layout["axes"]):
+            yield f"no {name} axis is named by a measure"
+    if any(not names_measure(difference["bar"] or "") for difference in layout["differences"]):
+        yield NO_BAR
+
+
+def old(root):
+    """By path, (digest, reason) of the pictures that need no file beside them."""
+    lines = (root / OLD).read_text(encoding="utf-8").splitlines() if (root / OLD).is_file() else []
+    return {path: (digest, reason) for path, digest, reason in (line.split(maxsplit=2) for line in lines if line and line[0] != "#")}
+
+
+def check_pngs(root):
+    excused = old(root)
+    if len(excused) > MAX_OLD:
+        yield f"{OLD}: {len(excused)} pictures, and it may only shrink from {MAX_OLD}"
+    for path in sorted((root / "docs/gallery").rglob("*.png")):
+        name, beside = str(path.relative_to(root)), path.with_suffix(".figure.json")
+        digest, _ = excused.pop(name, (None, None))
+        if beside.is_file():
+            yield from (f"{name}: {fault}" for fault in dict.fromkeys(png_faults(path, beside)))
+            if digest:
+                yield f"{name}: has {beside.name}, and {OLD} still excuses it"
+        elif digest != pixels(path):
+            yield f"{name}: no {beside.name} says what it shows" + (f", and {OLD} excuses another picture" if digest else "")
+    yield from (f"{OLD}: there is no {name}" for name in excused)
 
 
 def check(root):
     for path in sorted((root / "docs/gallery").rglob("*.svg")):
-        for fault in dict.fromkeys(faults_of(path.read_text(encoding="utf-8"))):
+        for fault in dict.fromkeys(svg_faults(path.read_text(encoding="utf-8"))):
             yield f"{path.relative_to(root)}: {fault}"
+    yield from check_pngs(root)
 
 
 if __name__ == "__main__":
-    sys.exit(run(lambda root: list(check(root)), sys.argv[1], "plots can be read on a wall"))
+    sys.exit(run(lambda root: list(check(root)), sys.argv[1], "figures can be read on a wall"))

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """Proves that the checks of pages can fail: plants one fault at a time in a small tree and expects it to be found."""
+import json
+import struct
 import sys
 import tempfile
 from pathlib import Path
@@ -46,8 +48,32 @@ SVG = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 960 560" font-size
 <g id="difference"/><g id="colour bar"><text x="900" y="300">bias [%]</text></g>
 </svg>
 """
+
+
+def png(shade):
+    """A PNG file with one chunk of data, a letter a byte."""
+    data = b"\x89PNG\r\n\x1a\n"
+    for kind, content in ((b"IHDR", struct.pack(">II", 960, 560)), (b"IDAT", bytes([shade]))):
+        data += struct.pack(">I", len(content)) + kind + content + bytes(4)
+    return data.decode("latin-1")
+
+
+def digest(text):
+    with tempfile.NamedTemporaryFile() as file:
+        Path(file.name).write_bytes(text.encode("latin-1"))
+        return check_figures.pixels(file.name)
+
+
+LAYOUT_FILE = "docs/gallery/drawn.figure.json"
+LAYOUT = json.dumps({"size": [960, 560], "pixels": digest(png(1)), "axes": [{"x": "wall time", "y": "relative RMSE"}],
+                    "labels": [{"text": "layers", "size": 13, "box": [800, 90, 880, 110]}, {"text": "ray lights", "size": 13, "box": [800, 120, 880, 140]}],
+                    "differences": [{"box": [0, 0, 300, 300], "bar": "-5 % luminance / white +5 %"}]})
 TREE = {
     "docs/gallery/plot.svg": SVG,
+    "docs/gallery/drawn.png": png(1),
+    "docs/gallery/drawn.figure.json": LAYOUT,
+    "docs/gallery/old.png": png(2),
+    check_figures.OLD: f"# What for\ndocs/gallery/old.png {digest(png(2))} drawn before\n",
     "README.md": README,
     "docs/page.md": PAGE,
     "docs/guide.md": "# Guide\n",
@@ -103,6 +129,20 @@ CASES = [  # check, file, what is replaced by what, what is found
     (check_figures, "docs/gallery/plot.svg", 'y="120"', 'y="105"', "'ray lights' lies on 'layers'"),
     (check_figures, "docs/gallery/plot.svg", 'id="colour bar"', "", "no colour bar"),
     (check_figures, "docs/gallery/plot.svg", "bias [%]", "0.5", "no colour bar"),
+    (check_figures, LAYOUT_FILE, "880, 110", "961, 110", "'layers' reaches out of the canvas"),
+    (check_figures, LAYOUT_FILE, "800, 90", "800, -1", "'layers' reaches out of the canvas"),
+    (check_figures, LAYOUT_FILE, '"size": 13', '"size": 11', "'layers' has 8.2 points"),
+    (check_figures, LAYOUT_FILE, "880, 110", "880, 130", "'ray lights' lies on 'layers'"),
+    (check_figures, LAYOUT_FILE, "relative RMSE", "error", "no vertical axis"),
+    (check_figures, LAYOUT_FILE, "wall time", "abscissa", "no horizontal axis"),
+    (check_figures, LAYOUT_FILE, '"-5 % luminance / white +5 %"', "null", "drawn.png: a difference has no colour bar"),
+    (check_figures, LAYOUT_FILE, "luminance / white", "", "drawn.png: a difference has no colour bar"),
+    (check_figures, "docs/gallery/drawn.png", png(1), png(3), "drawn.figure.json is that of another picture"),
+    (check_figures, "docs/gallery/old.png", png(2), png(3), "figures_without_labels.txt excuses another picture"),
+    (check_figures, check_figures.OLD, "old.png", "older.png", "old.png: no old.figure.json says what it shows"),
+    (check_figures, check_figures.OLD, "old.png", "older.png", "there is no docs/gallery/older.png"),
+    (check_figures, check_figures.OLD, "old.png", "drawn.png", "still excuses it"),
+    (check_figures, check_figures.OLD, "# What", "".join(f"gone{i} 0 drawn before\n" for i in range(check_figures.MAX_OLD)) + "# What", "it may only shrink"),
     (check_numbers, "docs/other.checks", "33 =", "34 =", "34' is not in the text"),
 ]
 LINKED = "\n[table](gallery/table.csv)\n"
@@ -115,7 +155,7 @@ def found(check, edits):
             path.parent.mkdir(parents=True, exist_ok=True)
             for file, old, new in edits:
                 text = text.replace(old, new) if file == name else text
-            path.write_text(text, encoding="utf-8")
+            path.write_bytes(text.encode("latin-1" if name.endswith(".png") else "utf-8"))
         return "\n".join(check.check(Path(folder)))
 
 
