@@ -66,17 +66,22 @@ step "each example, with g++ and cmake alone"
 install $(cd "$root/check" && echo mote-dev_*.deb | sed 's|^|/check/|') g++ cmake make
 cp -r "$source/examples" "$root/check/examples"
 inside mote render /check/examples/ssbc/room.xml -o /check/room.exr --passes 2 --auxiliary --quiet
-for folder in "$root"/check/examples/*/; do
-  example=$(basename "$folder")
+for file in "$root"/check/examples/*/CMakeLists.txt; do
+  example=$(basename "$(dirname "$file")")
   inside cmake -S "/check/examples/$example" -B "/check/build/$example" >> "$log" 2>&1 || { tail -n 20 "$log" && exit 1; }
   inside cmake --build "/check/build/$example" >> "$log" 2>&1 || { tail -n 20 "$log" && exit 1; }
+  program=("/check/build/$example/$example")
+  plugin=(mote render /check/scenes/cornell_box.xml --plugin "$program.so" -o /check/plugin.exr --passes 1 -D resx=64 -D resy=64)
   case $example in
-    ssbc) words=(/check/room.exr /check/compensated.exr) ;;
-    render_scene) words=(/check/scenes/cornell_box.xml /check/a.exr 1 resx=64 resy=64) ;;
-    render_from_c) words=(/check/scenes/cornell_box.xml /check/b.exr 1 resx 64 resy 64) ;;
-    *) words=() ;;
+    ssbc) program+=(/check/room.exr /check/compensated.exr) ;;
+    render_scene) program+=(/check/scenes/cornell_box.xml /check/a.exr 1 resx=64 resy=64) ;;
+    render_from_c) program+=(/check/scenes/cornell_box.xml /check/b.exr 1 resx 64 resy 64) ;;
+    my_integrator) program=("${plugin[@]}" --integrator my_ambient_occlusion) ;;
+    my_selector) program=("${plugin[@]}" --integrator mote_vpl -D integrator.selection=by_intensity) ;;
+    python_integrator) program=(echo "left out: no headers of Python") ;;
   esac
-  echo "$example: $(inside "/check/build/$example/$example" "${words[@]}" 2>> "$log" | tail -n 1)"
+  said=$(inside "${program[@]}" 2>> "$log" | tail -n 1) || { echo "$example fails" && tail -n 20 "$log" && exit 1; }
+  echo "$example: $said"
 done
 
 echo "all good: $log"

@@ -5,7 +5,7 @@
 #
 # Makes a Debian of the smallest kind with python3-venv in build/bare_wheel_RELEASE (debootstrap; kept for the next time),
 # installs the wheel of build/wheelhouse into a fresh environment there, renders with the command and from Python, reads a
-# VDB file, and prints how long each took. That of the other release's Python: tools/make_wheel.sh --also. Needs root, debootstrap, Debian's packages (100 MB each) and PyPI for NumPy.
+# VDB file, and prints how long each took; fails where the first picture takes over a minute. That of the other release's Python: tools/make_wheel.sh --also. Needs root, debootstrap, Debian's packages (100 MB each) and PyPI for NumPy.
 set -euo pipefail
 source=$(cd "$(dirname "$0")/.." && pwd)
 (($#)) || set -- bookworm trixie
@@ -39,9 +39,11 @@ for release in "$@"; do
   [[ -z ${PIP_CERT:-} ]] || cp -L "$PIP_CERT" "$root/check/certificates.crt"
   echo "== $release: $(inside sh -c 'ls /check/*.whl'), $(inside dpkg-query -f '.\n' -W | wc -l) packages of the system"
   inside python3 -m venv /check/python
+  begin=$EPOCHREALTIME
   timed sh -c 'pip install -q --disable-pip-version-check /check/mote-*.whl' 2>> "$log"
   timed mote --version
   timed mote render /check/cornell_box.xml -o /check/box.exr --passes 4 -D resx=64 -D resy=64 --quiet
+  awk -v a="$begin" -v b="$EPOCHREALTIME" 'BEGIN { printf "  %.2f s from the wheel to the first picture\n", b - a; exit b - a > 60 }'
   timed python -m mote info /check/ramp.vdb
   timed python -c "import mote; p = mote.render('/check/cornell_box.xml', passes=1); p.save('/check/box.png'); print(mote.__version__, p)"
   timed python -c "import mote"

@@ -7,11 +7,14 @@ FOLDER of --include is the usr/include of the other Python's development package
 depends on the interpreter. The commands that compiled the module here are run again, with those headers.
 """
 import argparse
+import os
 import re
 import shlex
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 
@@ -19,7 +22,7 @@ def commands(build, target):
     """What ninja runs for the module alone: its files, nanobind's, and the link."""
     said = subprocess.run(["ninja", "-C", build, "-t", "commands", target], check=True, capture_output=True, text=True).stdout
     own = re.compile(r"python/CMakeFiles/(_mote|nanobind-static\w*)\.dir/|-o python/_mote\.|/_mote\.cpython-\d+")
-    return [line for line in said.splitlines() if own.search(line) and not line.startswith("python")]
+    return [line for line in said.splitlines() if own.search(line)]
 
 
 def main():
@@ -37,7 +40,9 @@ def main():
     own_tag = f"cp{sys.version_info[0]}{sys.version_info[1]}"
     own_headers = __import__("sysconfig").get_paths()["include"]
     own_module = next(chosen.build.rglob(f"_mote.cpython-{own_tag[2:]}-*.so"))
-    module = Path(str(own_module).replace(own_tag[2:], tag[2:]))
+    module = own_module.with_name(own_module.name.replace(f"-{own_tag[2:]}-", f"-{tag[2:]}-"))
+    run = partial(subprocess.run, shell=True, check=True, cwd=chosen.build)
+    compiling, linking = [], []
     for line in commands(chosen.build, "_mote"):
         for own, other in ((own_headers, headers), ("python/CMakeFiles/", f"python/{tag}/"), ("python/libnanobind", f"python/{tag}/libnanobind"),
                            (own_module.name, module.name)):
@@ -46,7 +51,11 @@ def main():
             line = line.replace(" -c ", f" -idirafter {shlex.quote(str(include))} -c ")
         for output in re.findall(r"-o (\S+)", line):
             (chosen.build / output).parent.mkdir(parents=True, exist_ok=True)
-        subprocess.run(line, shell=True, check=True, cwd=chosen.build)
+        (compiling if " -c " in line else linking).append(line)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(run, compiling))
+    for line in linking:  # archive, then module
+        run(line)
     with tempfile.TemporaryDirectory() as scratch:
         wheel = [sys.executable, "-m", "wheel"]
         subprocess.run([*wheel, "unpack", "-d", scratch, chosen.wheel], check=True, stdout=subprocess.DEVNULL)
