@@ -146,7 +146,7 @@ WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& 
     follow<true, false>(scene, ray, state, weights, event, context,
                         [&](float t0, float t1) -> std::optional<float> {
                             if (const Medium* medium = state.current(); medium && t0 < t1) {
-                                points.begin_part(state);
+                                points.begin_part(state, t0, t1);
                                 medium->scatter_along({ray.origin, ray.direction, t0, t1}, weights, emitted,
                                                       points, context.rng, context.tracking);
                             }

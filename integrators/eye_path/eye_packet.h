@@ -48,7 +48,11 @@ class EyePacket {
     };
 
     EyePacket(const core::Scene& scene, const EyePacketSettings& settings, core::WalkContext& walk)
-        : scene_(scene), settings_(settings), walk_(walk) {}
+        : scene_(scene),
+          settings_(settings),
+          walk_(walk),
+          chooses_(Media && settings.guide.candidates() > 0),
+          candidates_(settings.guide.candidates()) {}
 
     void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];
@@ -135,7 +139,7 @@ class EyePacket {
         bool from_camera = true;
         for_each([&](int i, Lane& lane) {
             from_camera &= lane.path->depth() == 0;
-            if (takes_points(lane)) return;
+            if (walks_alone(lane)) return;
             lane.alive = lane.path->leave(walk_);
             if (lane.alive) rays[count++] = {&lane.path->ray(), &events_[std::size_t(i)].hit};
         });
@@ -145,6 +149,8 @@ class EyePacket {
             const auto seen = [&](const EyeSegment& s) { on_segment(i, lane, s); };
             if (takes_points(lane))
                 lane.alive = lane.path->advance_to_surface(walk_, lane.sum, *lane.points, seen);
+            else if (chooses_)
+                lane.alive = lane.alive && lane.path->advance_by_choice(walk_, lane.sum, candidates_, seen);
             else if (lane.alive)
                 lane.alive = lane.path->arrive(event_of(i), walk_, lane.sum, seen);
             if (settings_.records_seen && lane.alive && lane.path->depth() == 1) {
@@ -154,6 +160,7 @@ class EyePacket {
         });
     }
     bool takes_points(const Lane& lane) const { return Media && lane.points; }
+    bool walks_alone(const Lane& lane) const { return takes_points(lane) || chooses_; }
     /// After first_hits().
     core::WalkEvent& event_of(int lane) {
         using Kind = core::WalkEvent::Kind;
@@ -166,6 +173,8 @@ class EyePacket {
     const core::Scene& scene_;
     EyePacketSettings settings_;
     core::WalkContext& walk_;
+    bool chooses_;  ///< the guide chooses vertices, where a lane has no points of its own
+    core::ScatteringPoints candidates_;  ///< of the segment of one lane
     std::array<Lane, width> lanes_;
     std::array<core::WalkEvent, width> events_;               ///< by lane, while they take a segment
     std::array<lights::LightConnection, width> connections_;  ///< by lane, while they look for light

@@ -16,7 +16,7 @@
 #include "integrators/eye_path/scattered_light.h"
 #include "integrators/eye_path/transport_layers.h"
 #include "lights/direct_light/direct_light.h"
-#include "lights/guiding/scattering_guide.h"
+#include "lights/guiding/choose_scattering.h"
 
 namespace mote::integrators {
 
@@ -33,7 +33,7 @@ template <bool Media>
 class EyePath {
   public:
     /// `context` holds the path's generator, which also chooses the channel that drives distances.
-    /// `lights`: the sampled ones, where these are not all. `guide`: of its directions.
+    /// `lights`: the sampled ones, where these are not all. `guide`: of its directions and vertices.
     EyePath(const core::Scene& scene, const EyePathLimits& limits, const EyeRay& eye,
             core::WalkContext& context, const core::LitScene* lights = nullptr,
             const lights::ScatteringGuide& guide = lights::no_guide())
@@ -96,6 +96,13 @@ class EyePath {
             context, sum, on_segment);
     }
 
+    /// advance() where the guide chooses the next vertex (ScatteringGuide::candidates()): the path reaches
+    /// the end of the segment with certainty, weighted by its transmittance, counts the light there, and
+    /// continues at the surface or at one of the candidates that media leave at `points`.
+    template <typename OnSegment>
+    bool advance_by_choice(core::WalkContext& context, TransportSum& sum, core::ScatteringPoints& points,
+                           const OnSegment& on_segment);
+
     // At a vertex:
     const core::ScatteringVertex& vertex() const { return vertex_; }
     /// Next-event estimation: light of one light sampled for the vertex (lights/direct_light/direct_light.h).
@@ -123,7 +130,10 @@ class EyePath {
     /// Light of a connection that nothing occludes.
     core::Rgb finish_light(const lights::LightConnection& connection, core::WalkContext& context,
                            const lights::LightSampling& how) {
-        return lights::finish_connection<Media>(lights_, vertex_, weights_, state_, connection, context, how);
+        lights::LightSampling sampling = how;
+        if (Media && guide_.candidates() > 0) sampling.passes_media = true;
+        return lights::finish_connection<Media>(lights_, vertex_, weights_, state_, connection, context,
+                                                sampling);
     }
     /// The vertex at a scattering point of the last segment.
     core::ScatteringVertex vertex_at(const core::Vec3& position, const core::MediumState& state) const {
@@ -146,6 +156,7 @@ class EyePath {
     core::MediumState& state() { return state_; }      ///< media on the side where the path is
     core::PathWeights& weights() { return weights_; }  ///< of the path so far
     core::Sampler& sampler() { return sampler_; }      ///< of the path, for what is sampled at the vertex
+    const lights::VmfMixture& guided() const { return guided_; }  ///< directions of the guide at the vertex
     /// The weight of light that reaches the path's end.
     core::Rgb throughput() const { return lights::throughput_of<Media>(weights_); }
     /// The length of hidden lights' part of the first segment, which ray() no longer holds [m].
@@ -176,7 +187,18 @@ class EyePath {
     }
     template <typename Walk, typename OnSegment>
     bool arrive_by(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
-                   const OnSegment& on_segment);
+                   const OnSegment& on_segment) {
+        find_light(walk, event, sum, on_segment);
+        return make_next_vertex(event);
+    }
+    template <typename Walk, typename OnSegment>
+    void find_light(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
+                    const OnSegment& on_segment);
+    bool make_next_vertex(const core::WalkEvent& event);
+    bool has_ended() const { return depth_ == limits_.max_depth || scatterings_ == limits_.max_scatterings; }
+    void choose_vertex(const core::ScatteringPoints& points, core::WalkEvent& event, float u);
+    void expect_radiance();
+    bool survives_roulette(core::WalkContext& context);
     bool scatter(core::WalkContext& context);
     bool wants_more() const;
     /// Lights that the camera does not see: the first segment continues behind them.
@@ -192,8 +214,10 @@ class EyePath {
     core::MediumState state_;
     core::PathWeights weights_;
     core::ScatteringVertex vertex_;
-    lights::VmfMixture guided_;  ///< directions of the guide at the vertex
-    core::Vec2 choices_{0.0f};   ///< of the light, and of the lobe
+    lights::VmfMixture guided_;          ///< directions of the guide at the vertex
+    lights::ExpectedRadiance expected_;  ///< by the guide, behind the vertex
+    float expected_of_path_ = 0.0f;      ///< by the guide, at the first vertex that light is joined to
+    core::Vec2 choices_{0.0f};           ///< of the light, and of the lobe
     core::LightReceiver previous_;
     bool connected_ = false;  ///< next-event estimation at `previous_` could find the next light
     bool surface_first_ = true, ends_at_delta_ = false;
@@ -226,11 +250,49 @@ bool EyePath<Media>::arrive(core::WalkEvent& event, core::WalkContext& context, 
     return arrive_by(walk, event, sum, on_segment);
 }
 
-/// walk(emitted) sets `event`.
+template <bool Media>
+template <typename OnSegment>
+bool EyePath<Media>::advance_by_choice(core::WalkContext& context, TransportSum& sum,
+                                       core::ScatteringPoints& points, const OnSegment& on_segment) {
+    if (!leave(context)) return false;
+    core::WalkEvent event;
+    points.start(core::Rng(context.rng.next_u32()));
+    const auto walk = [&](core::Rgb& emitted) {
+        event = core::walk_to_surface(scene_, ray_, state_, weights_, emitted, points, context);
+    };
+    find_light(walk, event, sum, on_segment);
+    if (has_ended()) return false;
+    choose_vertex(points, event, context.rng.next_float());
+    return make_next_vertex(event);
+}
+
+/// Makes `event` the one of the chosen vertex. The throughput turns black where there is none.
+template <bool Media>
+void EyePath<Media>::choose_vertex(const core::ScatteringPoints& points, core::WalkEvent& event, float u) {
+    const bool surface = event.kind == core::WalkEvent::Kind::surface;
+    const auto candidates = points.kept();
+    const lights::ScatteringChoice choice = lights::choose_scattering(
+        candidates, surface ? weights_.throughput : core::Rgb(0.0f), event.hit.position, guide_, u);
+    if (!(choice.probability > 0.0f)) {
+        weights_.throughput = core::Rgb(0.0f);
+        return;
+    }
+    if (scatterings_ == 0) expected_of_path_ = choice.known ? choice.expected : 0.0f;
+    if (choice.index < candidates.size()) {
+        const core::ScatteringPoint& point = candidates[choice.index];
+        state_ = points.state_of(point), weights_.throughput = point.weight;
+        event.kind = core::WalkEvent::Kind::collision, event.medium = state_.current();
+        event.distance = points.distance_of(point, ray_), event.reflected = false, event.stop_chance = 1.0f;
+    }
+    weights_.throughput /= choice.probability;
+    guide_ratio_ *= choice.probability / choice.by_extinction;
+}
+
+/// Adds the light that a walk finds to `sum`. walk(emitted) sets `event`.
 template <bool Media>
 template <typename Walk, typename OnSegment>
-bool EyePath<Media>::arrive_by(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
-                               const OnSegment& on_segment) {
+void EyePath<Media>::find_light(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
+                                const OnSegment& on_segment) {
     core::Rgb& found = sum[layer_of_emission()];
     const auto go = [&] {
         const core::MediumState start = state_;
@@ -247,13 +309,27 @@ bool EyePath<Media>::arrive_by(const Walk& walk, const core::WalkEvent& event, T
     if (limits_.wanted[layer_of_emission()] && !hidden)
         found +=
             lights::found_light<Media>(lights_, event, ray_, weights_, connected_ ? &previous_ : nullptr);
-    if (event.kind == core::WalkEvent::Kind::escaped || depth_ == limits_.max_depth ||
-        scatterings_ == limits_.max_scatterings || core::is_black(weights_.throughput))
+}
+
+/// Returns false where the path ends.
+template <bool Media>
+bool EyePath<Media>::make_next_vertex(const core::WalkEvent& event) {
+    if (event.kind == core::WalkEvent::Kind::escaped || has_ended() || core::is_black(weights_.throughput))
         return false;
     vertex_ = make_vertex(event, ray_), segment_length_ = event.distance;
     guide_.find(vertex_, guided_);
+    expect_radiance();
     choices_ = sampler_.next_2d();
     return true;
+}
+
+/// The radiance of the whole path is expected at its first vertex, unless choose_vertex() has expected it
+/// along the segment.
+template <bool Media>
+void EyePath<Media>::expect_radiance() {
+    expected_ = guide_.expected(vertex_.position, vertex_.on_surface());
+    if (scatterings_ == 0 && expected_.known && !(Media && guide_.candidates() > 0))
+        expected_of_path_ = core::average(throughput()) * expected_.mean;
 }
 
 template <bool Media>
@@ -284,13 +360,22 @@ bool EyePath<Media>::wants_more() const {
     return scatterings_ + 1 != limits_.max_scatterings && limits_.wanted[transport_layer(2, surface)];
 }
 
+/// By expected contribution where the guide has learned it, else by what is left of the throughput.
+template <bool Media>
+bool EyePath<Media>::survives_roulette(core::WalkContext& context) {
+    if (expected_.known && expected_of_path_ > 0.0f && vertex_.connectable() &&
+        depth_ < core::long_eye_path.vertices)
+        return survives_by_expectation<Media>(weights_, expected_.indirect / expected_of_path_,
+                                              context.rng.next_float());
+    return depth_ < limits_.rr_depth ||
+           survives<Media>(weights_, core::sqr(eta_) * guide_ratio_, depth_, context.rng.next_float());
+}
+
 /// Leaves the vertex. Returns false where the path ends instead.
 template <bool Media>
 bool EyePath<Media>::scatter(core::WalkContext& context) {
     if (!wants_more()) return false;
-    if (depth_ >= limits_.rr_depth &&
-        !survives<Media>(weights_, core::sqr(eta_) * guide_ratio_, depth_, context.rng.next_float()))
-        return false;
+    if (!survives_roulette(context)) return false;
     const auto guided = lights::sample_guided(vertex_, guided_, choices_.y, sampler_.next_2d(),
                                               core::TransportMode::radiance);
     if (!guided) return false;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <span>
 
 #include "core/render/counted_work.h"
 #include "core/render/render_driver.h"
@@ -13,20 +14,12 @@
 namespace mote::integrators {
 
 using namespace core;
-using lights::GuidingSample, lights::LearnedGuide;
+using lights::GuidingSamples, lights::GuideParts, lights::LearnedGuide;
 
 namespace {
 
 constexpr std::uint32_t training_stream = 0x677569u;  // keeps training paths apart from those of the picture
 constexpr std::size_t chunk_paths = 1024;             ///< of a task, packet by packet
-
-struct Samples {
-    std::vector<GuidingSample> surfaces, media;
-};
-
-void append(std::vector<GuidingSample>& to, const std::vector<GuidingSample>& from) {
-    to.insert(to.end(), from.begin(), from.end());
-}
 
 /// Paths of a pass that is none of the picture.
 struct PassOfPaths {
@@ -77,18 +70,18 @@ void trace_pass(const Scene& scene, const RenderOptions& options, const PathSett
 }
 
 template <bool Media>
-Samples trace_training_pass(const Scene& scene, const RenderOptions& options, const PathSettings& settings,
-                            const PassOfPaths& pass, const LearnedGuide& guide, SharedCounters& counters) {
-    std::vector<Samples> chunks(chunks_of(pass));
+GuidingSamples trace_training_pass(const Scene& scene, const RenderOptions& options,
+                                   const PathSettings& settings, const PassOfPaths& pass,
+                                   const LearnedGuide& guide, SharedCounters& counters) {
+    std::vector<GuidingSamples> chunks(chunks_of(pass));
     trace_pass<Media>(scene, options, settings, pass, guide, counters,
                       [&](std::size_t chunk, std::size_t, EyePacket<Media>& packet) {
                           PathRecorder<Media> recorder;
-                          trace_paths(scene, settings, packet, &recorder);
-                          recorder.finish(packet, chunks[chunk].surfaces, chunks[chunk].media);
+                          trace_paths(scene, settings, packet, recorder);
+                          recorder.finish(packet, chunks[chunk]);
                       });
-    Samples all;
-    for (Samples& chunk : chunks)
-        append(all.surfaces, chunk.surfaces), append(all.media, chunk.media), chunk = {};
+    GuidingSamples all;
+    for (GuidingSamples& chunk : chunks) all.append(chunk), chunk = {};
     return all;
 }
 
@@ -117,54 +110,72 @@ double variance_of(const Trials& trials, std::size_t pixel) {
     return std::max(0.0, squares - sum * sum / trial_passes) / (trial_passes - 1.0);
 }
 
-/// Variances of both kinds over the squared mean around each path. That is taken from a run of neighbouring
-/// paths: from those of a pixel alone, a bright one would hide itself.
-std::array<double, 2> relative_variances(const Trials& plain, const Trials& guided) {
+/// Variances of several kinds of paths over the squared mean around each path. That is taken from a run of
+/// neighbouring paths: from those of a pixel alone, a bright one would hide itself.
+std::vector<double> relative_variances(std::span<const Trials> kinds) {
     constexpr std::size_t run = 256;
-    std::vector<std::array<double, 3>> runs;  // mean of both kinds, variances
-    for (std::size_t first = 0; first < plain.front().size(); first += run) {
-        const std::size_t end = std::min(first + run, plain.front().size());
-        auto& [mean, without, with] = runs.emplace_back();
-        for (std::size_t i = first; i < end; ++i) {
-            for (std::uint32_t k = 0; k < trial_passes; ++k)
-                mean += double(plain[k][i]) + double(guided[k][i]);
-            without += variance_of(plain, i), with += variance_of(guided, i);
+    const std::size_t paths = kinds.front().front().size();
+    std::vector<double> means, variances;  // of runs; of runs and kinds
+    for (std::size_t first = 0; first < paths; first += run) {
+        const std::size_t end = std::min(first + run, paths);
+        double mean = 0.0;
+        for (const Trials& trials : kinds) {
+            double variance = 0.0;
+            for (std::size_t i = first; i < end; ++i) {
+                for (const auto& t : trials) mean += double(t[i]);
+                variance += variance_of(trials, i);
+            }
+            variances.push_back(variance);
         }
-        mean /= 2.0 * trial_passes * double(end - first);
+        means.push_back(mean / (trial_passes * double(kinds.size() * (end - first))));
     }
     double whole = 0.0;
-    for (const auto& r : runs) whole += r[0] / double(runs.size());
-    std::array<double, 2> sums{};
-    for (const auto& [mean, without, with] : runs) {
-        if (!(mean > 0.0)) continue;
-        const double weight = 1.0 / (mean * mean + 0.01 * whole * whole);
-        sums[0] += weight * without, sums[1] += weight * with;
-    }
+    for (const double mean : means) whole += mean / double(means.size());
+    std::vector<double> sums(kinds.size());
+    for (std::size_t r = 0; r < means.size(); ++r)
+        for (std::size_t k = 0; k < kinds.size() && means[r] > 0.0; ++k)
+            sums[k] += variances[r * kinds.size() + k] / (means[r] * means[r] + 0.01 * whole * whole);
     return sums;
+}
+
+/// All that a guide can decide in the scene. Light of media that glow is not sampled along whole segments.
+template <bool Media>
+GuideParts largest_parts(const Scene& scene, const GuidingSettings& settings) {
+    if (!settings.vertices) return GuideParts::directions;
+    if (!Media) return GuideParts::directions_and_ends;
+    for (const auto& medium : scene.media())
+        if (medium->traits().emissive) return GuideParts::directions_and_ends;
+    return GuideParts::directions_and_vertices;
 }
 
 }  // namespace
 
 template <bool Media>
-bool guide_pays(const Scene& scene, const RenderOptions& options, const PathSettings& settings,
-                const lights::ScatteringGuide& guide, double work, SharedCounters& counters) {
+bool choose_parts(const Scene& scene, const RenderOptions& options, const PathSettings& settings,
+                  LearnedGuide& guide, double work, SharedCounters& counters) {
     const auto paths = std::size_t(std::max(16, settings.guiding.paths / 4));
     const std::uint32_t first = std::uint32_t(settings.guiding.passes);
-    const auto trials = [&](const lights::ScatteringGuide& of, std::uint32_t begin, double& spent) {
-        Trials result;
+    std::uint32_t begin = first;
+    std::vector<Trials> kinds;
+    std::vector<double> cost;  // of each kind
+    const auto measure = [&](const lights::ScatteringGuide& of, double factor) {
+        Trials& result = kinds.emplace_back();
         SharedCounters own;
-        for (std::uint32_t k = 0; k < trial_passes; ++k)
-            result[k] = trial_pass<Media>(scene, options, settings, {begin + k, first, paths}, of, own);
+        for (auto& light : result)
+            light = trial_pass<Media>(scene, options, settings, {begin++, first, paths}, of, own);
         Statistics statistics;
         own.report(statistics, Media), counters.add(own);
-        spent = counted_work(statistics);
-        return result;
+        cost.push_back(counted_work(statistics) * factor);
     };
-    double plain_work = 0.0, guided_work = 0.0;
-    const Trials plain = trials(lights::no_guide(), first, plain_work);
-    const Trials guided = trials(guide, first + trial_passes, guided_work);
-    const auto [without, with] = relative_variances(plain, guided);
-    return with * guided_work * work < without * plain_work;
+    std::vector<GuideParts> parts{GuideParts::directions, largest_parts<Media>(scene, settings.guiding)};
+    if (parts[0] == parts[1]) parts.pop_back();
+    measure(lights::no_guide(), 1.0);
+    for (const GuideParts p : parts) guide.decide(p), measure(guide, work);
+    std::vector<double> loss = relative_variances(kinds);
+    for (std::size_t k = 0; k < loss.size(); ++k) loss[k] *= cost[k];
+    const auto best = std::size_t(std::min_element(loss.begin(), loss.end()) - loss.begin());
+    if (best > 0) guide.decide(parts[best - 1]);
+    return best > 0;
 }
 
 template <bool Media>
@@ -174,23 +185,23 @@ std::unique_ptr<LearnedGuide> train_guide(const Scene& scene, const RenderOption
     auto guide = std::make_unique<LearnedGuide>(
         lights::GuidingField::Settings{guiding.leaf_samples, guiding.memory * 1048576.0}, Media,
         options.memory);
-    options.memory.require(
-        double(guiding.paths) * double(PathRecorder<Media>::max_records) * sizeof(GuidingSample) * 2.0,
-        "the samples of a training pass");
+    guide->decide(largest_parts<Media>(scene, guiding));
+    options.memory.require(double(guiding.paths) * double(PathRecorder<Media>::max_bytes) * 2.0,
+                           "the samples of a training pass");
     for (std::uint32_t i = 0; i < std::uint32_t(guiding.passes); ++i) {
         // Passes 1, 2, 4, ...: the later ones are guided better, so what was learned before counts half.
-        if (std::has_single_bit(i + 1) && i > 0) guide->surfaces().scale(0.5), guide->media().scale(0.5);
+        if (std::has_single_bit(i + 1) && i > 0) guide->scale(0.5);
         const PassOfPaths pass{i, i, std::size_t(guiding.paths)};
-        Samples samples = trace_training_pass<Media>(scene, options, settings, pass, *guide, counters);
-        guide->surfaces().add(samples.surfaces), guide->media().add(samples.media);
+        GuidingSamples samples = trace_training_pass<Media>(scene, options, settings, pass, *guide, counters);
+        guide->add(samples);
     }
     return guide;
 }
 
-template bool guide_pays<true>(const Scene&, const RenderOptions&, const PathSettings&,
-                               const lights::ScatteringGuide&, double, SharedCounters&);
-template bool guide_pays<false>(const Scene&, const RenderOptions&, const PathSettings&,
-                                const lights::ScatteringGuide&, double, SharedCounters&);
+template bool choose_parts<true>(const Scene&, const RenderOptions&, const PathSettings&, LearnedGuide&,
+                                 double, SharedCounters&);
+template bool choose_parts<false>(const Scene&, const RenderOptions&, const PathSettings&, LearnedGuide&,
+                                  double, SharedCounters&);
 template std::unique_ptr<LearnedGuide> train_guide<true>(const Scene&, const RenderOptions&,
                                                          const PathSettings&, SharedCounters&);
 template std::unique_ptr<LearnedGuide> train_guide<false>(const Scene&, const RenderOptions&,

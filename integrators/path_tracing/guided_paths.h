@@ -21,11 +21,11 @@ std::unique_ptr<lights::LearnedGuide> train_guide(const core::Scene& scene,
                                                   const core::RenderOptions& options,
                                                   const PathSettings& settings, SharedCounters& counters);
 
-/// True where the guide's directions leave less variance for the same counted work, by trial passes of both
-/// kinds over the same pixels. Depends on scene and seed alone. `work`: cost of a guided ray in unguided
-/// ones.
+/// Lets the guide decide what leaves least variance for the same counted work, by trial passes of all kinds
+/// over the same pixels. False: unguided paths leave less. Depends on scene and seed alone. `work`: cost of a
+/// guided ray in unguided ones.
 template <bool Media>
-bool guide_pays(const core::Scene& scene, const core::RenderOptions& options, const PathSettings& settings,
-                const lights::ScatteringGuide& guide, double work, SharedCounters& counters);
+bool choose_parts(const core::Scene& scene, const core::RenderOptions& options, const PathSettings& settings,
+                  lights::LearnedGuide& guide, double work, SharedCounters& counters);
 
 }  // namespace mote::integrators

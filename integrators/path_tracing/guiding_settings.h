@@ -5,10 +5,11 @@
 
 #include "core/parameters/add_type.h"
 #include "core/render/plan.h"
+#include "core/scene/requirements.h"
 
 namespace mote::integrators {
 
-/// Directions of paths from a field of incident radiance that is learned first (guided_paths.h).
+/// Paths guided by light that is learned first (guided_paths.h).
 enum class Guiding : std::uint8_t { off, automatic, on };
 
 struct GuidingSettings {
@@ -16,12 +17,14 @@ struct GuidingSettings {
     int passes = 31;               ///< of training
     int paths = 65536;             ///< of a training pass
     double leaf_samples = 8000.0;  ///< a leaf of the field with more is split
-    double memory = 64.0;          ///< of the field [MiB]
+    double memory = 64.0;          ///< of the fields [MiB]
+    bool vertices = true;          ///< vertices in media and Russian roulette, besides directions
 };
 
 const core::ParameterList<GuidingSettings>& guiding_rows();
 
-/// Says what guides paths, and when.
-void plan_guiding(core::Plan& plan, const GuidingSettings& settings);
+/// Says what guides paths, and when. `media`: paths see them.
+void plan_guiding(core::Plan& plan, const GuidingSettings& settings, const core::Requirements& requirements,
+                  bool media);
 
 }  // namespace mote::integrators

@@ -19,7 +19,10 @@ class PathEstimator final : public Estimator {
         : scene_(scene), settings_(settings), loop_(scene, options) {
         settings_.limits.wanted = options.cells;
         if (settings_.guiding.mode != Guiding::off) train(options);
-        if (!Media && !guide_ && WavefrontScene::suits(scene, settings_))
+        if (Media || !WavefrontScene::suits(scene, settings_)) return;
+        if (guide_)
+            wavefront_.emplace(scene, settings_.limits, *guide_);
+        else
             wavefront_.emplace(scene, settings_.limits);
     }
 
@@ -42,8 +45,8 @@ class PathEstimator final : public Estimator {
         statistics.seconds["guiding"] += training_seconds_;
         statistics.values["guided"] = guide_ ? 1.0 : 0.0;
         if (!guide_) return;
-        statistics.values["guiding_leaves"] +=
-            double(guide_->surfaces().leaves().size() + guide_->media().leaves().size());
+        statistics.values["guiding_leaves"] += double(guide_->leaves());
+        statistics.values["guided_vertices"] = guide_->candidates() > 0 ? 1.0 : 0.0;
     }
 
   private:
@@ -51,7 +54,7 @@ class PathEstimator final : public Estimator {
         const auto start = std::chrono::steady_clock::now();
         guide_ = train_guide<Media>(scene_, options, settings_, loop_.counters());
         if (settings_.guiding.mode == Guiding::automatic &&
-            !guide_pays<Media>(scene_, options, settings_, *guide_, guided_ray_work(), loop_.counters()))
+            !choose_parts<Media>(scene_, options, settings_, *guide_, guided_ray_work(), loop_.counters()))
             guide_.reset();
         training_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
@@ -63,7 +66,7 @@ class PathEstimator final : public Estimator {
     PathSettings settings_;
     std::optional<WavefrontScene> wavefront_;  ///< for scenes that it suits
     ImageLoop<Media> loop_;
-    std::unique_ptr<const lights::LearnedGuide> guide_;  ///< of guided paths
+    std::unique_ptr<lights::LearnedGuide> guide_;  ///< of guided paths
     double training_seconds_ = 0.0;
 };
 

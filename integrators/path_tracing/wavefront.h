@@ -20,6 +20,8 @@ namespace mote::integrators {
 /// Scene, limits and tables that the wavefronts of a render have in common.
 struct WavefrontScene {
     WavefrontScene(const core::Scene& s, const EyePathLimits& l);
+    /// For guided paths.
+    WavefrontScene(const core::Scene& s, const EyePathLimits& l, const lights::ScatteringGuide& g);
     /// False where paths need what a wavefront does not have: panes, lights that eye rays pass, a bound.
     static bool suits(const core::Scene& scene, const PathSettings& settings);
 
@@ -27,6 +29,8 @@ struct WavefrontScene {
     EyePathLimits limits;
     LambertianShapes lambertian;
     std::optional<lights::LitParallelogram> light;  ///< the only light, where it is one
+    const lights::ScatteringGuide& guide;
+    bool guided;  ///< false: `guide` guides nothing
 };
 
 class Wavefront {
@@ -51,6 +55,12 @@ class Wavefront {
         float operator[](int i) const { return value[i]; }
     };
 
+    // wavefront_guiding.cpp:
+    void find_guides();
+    void weight_guides_to_lights();
+    void sample_guides();
+    bool survives_roulette(int i);
+
     void arrive();
     core::Rgb found_light(int i) const;
     void make_vertex(int i);
@@ -67,6 +77,7 @@ class Wavefront {
     bool wants_more(int i) const;
     void move(int from, int to);
     core::LightReceiver receiver(int i) const;
+    const lights::VmfMixture& lobes(int i) const;
     core::Vec3 wo(int i) const { return -rays_.direction.get(i); }
     Transport layer_of_connection(int i) const { return transport_layer(scatterings_[i] + 1, true); }
 
@@ -95,10 +106,20 @@ class Wavefront {
     core::HitBatch hits_;
     Kind kind_[capacity];
     Vectors reflectance_;                         ///< of Lambertian surfaces
+    core::ScatteringVertex vertex_;               ///< the one that the guide is queried for
     std::vector<core::ScatteringVertex> others_;  ///< on other materials; empty before the first of them
     bool any_other_ = false;
     Numbers u_lobe_, u_light_, u_light_x_, u_light_y_, u_scatter_x_, u_scatter_y_;
     bool connects_[capacity];  ///< next-event estimation is wanted
+
+    // By lane, of guided paths; without, as they are here:
+    std::vector<lights::VmfMixture> lobes_;           ///< directions of the guide at the vertices
+    std::vector<lights::ExpectedRadiance> expected_;  ///< behind the vertices
+    Numbers expected_of_path_;                        ///< at its first vertex
+    Numbers guide_ratio_;      ///< density of the path's directions over that without a guide
+    Numbers own_probability_;  ///< of a direction by the BSDF; the rest are the guide's
+    Numbers guide_to_light_;   ///< density of the guide's choice of the sampled light's direction
+    Numbers next_weight_;      ///< density of the next direction by the BSDF over that of both
 
     // By lane, of connections:
     Vectors to_light_, radiance_;

@@ -11,9 +11,10 @@ using core::Vec3, core::Vec3d;
 namespace {
 
 constexpr int lobe_count = VmfMixture::capacity;
-constexpr int steps = 3;                 ///< of expectation and maximisation, for each batch
-constexpr double weight_prior = 0.1;     ///< a: effective samples in every lobe
-constexpr double direction_prior = 0.2;  ///< b: effective samples of all directions
+constexpr int steps = 3;                  ///< of expectation and maximisation, for each batch
+constexpr double weight_prior = 0.1;      ///< a: effective samples in every lobe
+constexpr double direction_prior = 0.2;   ///< b: effective samples of all directions
+constexpr double enough_samples = 256.0;  ///< for a probability of the mixture
 
 /// A direction and the inverse distance of what lies there.
 struct Sight {
@@ -57,6 +58,17 @@ void MixtureFit::add(std::span<const GuidingSample> samples) {
         maximise(sums);
     }
     std::copy(sums, sums + lobe_count, sums_);
+    for (const GuidingSample& s : samples) {
+        const double square = double(s.scattered) * double(s.weight) * double(s.scattered) * double(s.weight);
+        for (std::size_t k = 0; k < std::size(probabilities); ++k)
+            second_moments_[k] +=
+                square / double((1.0f - probabilities[k]) * s.own + probabilities[k] * s.guide);
+    }
+}
+
+float MixtureFit::probability() const {
+    const auto best = std::min_element(std::begin(second_moments_), std::end(second_moments_));
+    return samples_ >= enough_samples && *best > 0.0 ? probabilities[best - second_moments_] : 0.5f;
 }
 
 void MixtureFit::expect(std::span<const GuidingSample> samples, Sums (&sums)[lobe_count]) const {
@@ -97,6 +109,7 @@ void MixtureFit::maximise(const Sums (&sums)[lobe_count]) {
 
 void MixtureFit::scale(double factor) {
     samples_ *= factor;
+    for (double& moment : second_moments_) moment *= factor;
     for (Sums& s : sums_) {
         s.weight *= factor, s.squares *= factor;
         s.inverse_distance *= factor, s.direction *= factor;
@@ -121,6 +134,7 @@ VmfMixture MixtureFit::at(const Vec3& position) const {
     VmfMixture seen = mixture_;
     seen.empty = !(light() > 0.0);
     if (seen.empty) return seen;
+    seen.probability = probability();
     for (int k = 0; k < lobe_count; ++k) {
         const Vec3 mean = by_parallax({mixture_.lobe(k).mean, distances_[k]}, pivot_, position).direction;
         seen.x[k] = mean.x, seen.y[k] = mean.y, seen.z[k] = mean.z;

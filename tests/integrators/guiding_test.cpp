@@ -33,10 +33,17 @@ void check_equal(const Scene& scene, const std::string& type, std::uint32_t pass
     CHECK(guided.non_finite == 0);
 }
 
-/// A guide whose lobes point anywhere, whose density counts as `factor` times what it is.
+/// A guide whose lobes point anywhere, whose density counts as `factor` times what it is; and one that
+/// expects anything of vertices.
 class AnyGuide final : public lights::ScatteringGuide {
   public:
-    explicit AnyGuide(float factor) : factor_(factor) {}
+    explicit AnyGuide(float factor, bool vertices = false) : factor_(factor), vertices_(vertices) {}
+    int candidates() const override { return vertices_ ? 8 : 0; }
+    lights::ExpectedRadiance expected(const Vec3& p, bool on_surface) const override {
+        if (!vertices_) return {};
+        const float mean = (on_surface ? 1.0f : 0.5f) + std::sin(5.0f * p.x) * std::cos(7.0f * p.y);
+        return {std::fabs(mean), std::fabs(mean), 0.5f * std::fabs(mean), true};
+    }
     void find(const ScatteringVertex& vertex, lights::VmfMixture& lobes) const override {
         lobes.empty = true;
         if (!lights::LearnedGuide::guides(vertex)) return;
@@ -48,6 +55,7 @@ class AnyGuide final : public lights::ScatteringGuide {
 
   private:
     float factor_;
+    bool vertices_;
 };
 
 /// Paths with a guide of a test.
@@ -129,6 +137,64 @@ TEST_CASE("A guide of any directions keeps the mean; a density that is not its o
     CHECK_FALSE(same_mean(wrong, "beauty", reference, "beauty", OnFailure::nothing).passed);
 }
 
+TEST_CASE("A guide that expects anything of vertices keeps the mean", "[guiding]") {
+    const auto path = std::filesystem::temp_directory_path() / "mote_guided_vertices.vol";
+    for (const std::string& medium : {forward_fog, smoke_medium(path.string())}) {
+        const auto scene = scene_from(box(mixed, medium), 8);
+        const auto reference =
+            render_statistics(*scene, *integrator_from(R"(<integrator type="volpath"/>)"), {4, 1500, 1});
+        const auto any = render_statistics(*scene, PathsOf(AnyGuide(1.0f, true)), {4, 3000, 2});
+        for (const std::string& layer : reference.layers) check_same_mean(any, layer, reference, layer);
+        check_same_mean(any, "beauty", reference, "beauty", {1.1});
+    }
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("Guided paths keep the mean with directions alone", "[guiding][equality]") {
+    const std::string directions = R"(<boolean name="guiding_vertices" value="false"/>)";
+    check_equal(*scene_from(box(grey, forward_fog), 16), "volpath", 3000, directions);
+}
+
+TEST_CASE("Guided vertices keep the mean among panes and with lights that the camera does not see",
+          "[guiding][equality]") {
+    check_equal(*scene_from(leafy_box(forward_fog), 16), "volpath", 3000,
+                R"(<boolean name="hide_emitters" value="true"/>)");
+}
+
+TEST_CASE("Guided vertices in media that absorb nothing are in equilibrium", "[guiding][furnace]") {
+    for (const double depth : {0.01, 1.0, 30.0})
+        for (const double z : {-4.0, -0.3}) {
+            const auto scene = scene_from(
+                fmt::format(
+                    R"(<scene version="3.0.0"><emitter type="constant"/><shape type="sphere"><bsdf type="null"/>
+                <medium type="homogeneous" name="interior"><float name="sigma_t" value="{}"/><float name="albedo" value="1"/>
+                <phase type="hg"><float name="g" value="0.7"/></phase></medium></shape><sensor type="perspective">
+                <float name="fov" value="30"/><transform name="to_world"><lookat origin="0, 0, {}" target="0, 0, 1"
+                up="0, 1, 0"/></transform></sensor></scene>)",
+                    depth / 2.0, z),
+                8);
+            CAPTURE(depth, z);
+            check_mean_is(render_statistics(*scene, *paths("volpath", "on"), {4, 400, 7}), "beauty", 1.0);
+        }
+}
+
+TEST_CASE("Media that glow are guided by directions and ends alone", "[guiding]") {
+    const std::string glowing =
+        R"(<medium type="homogeneous" name="interior"><float name="sigma_t" value="1"/><float name="albedo" value="0.5"/>
+        <rgb name="Le" value="1, 2, 3"/></medium>)";
+    const auto scene = scene_from(box(grey, glowing), 8);
+    check_equal(*scene, "volpath", 1500);
+    RenderOptions options;
+    options.width = options.height = 8;
+    Statistics statistics;
+    paths("volpath", "on")->prepare(*scene, options)->add_statistics(statistics);
+    CHECK(statistics.values.at("guided_vertices") == 0.0);
+    paths("volpath", "on")
+        ->prepare(*scene_from(box(grey, forward_fog), 8), options)
+        ->add_statistics(statistics);
+    CHECK(statistics.values.at("guided_vertices") == 1.0);
+}
+
 TEST_CASE("A closed furnace is one with guided paths", "[guiding]") {
     // Radiance 1 from all walls of a closed box that absorb nothing: E / (1 - rho) with rho = 1/2, E = 1/2.
     const std::string xml =
@@ -208,9 +274,11 @@ bool automatic_guides(const Scene& scene) {
 }  // namespace
 
 TEST_CASE("Guided paths are quieter under a bright spot, by far", "[guiding]") {
+    // Directions alone: roulette by expected radiance exchanges noise of a pass for shorter paths.
+    const std::string directions = R"(<boolean name="guiding_vertices" value="false"/>)";
     const auto scene = scene_from(lamp_upwards(), 16);
     const auto noise = [&](const char* guiding) {
-        const auto r = render_statistics(*scene, *paths("path", guiding), {16, 256, 1});
+        const auto r = render_statistics(*scene, *paths("path", guiding, directions), {16, 256, 1});
         return r.whole[r.layer("indirect")][1].variance_of_mean;
     };
     const double guided = noise("on"), plain = noise("off");
