@@ -14,7 +14,7 @@ namespace {
 
 constexpr int reach = 2;                   ///< neighbours within 5 x 5 pixels
 constexpr double alike = 9.0;              ///< three standard deviations, squared
-constexpr double certain = 4.0;            ///< two, squared
+constexpr double certain = 3.0;            ///< standard deviations
 constexpr double darkest_fraction = 0.01;  ///< (1 / 10)^2 in Eq. (1)
 
 double median_that_is_not_black(const std::vector<double>& squares) {
@@ -60,7 +60,8 @@ Smoothed smoothed(std::span<const Rgb> picture, std::span<const Rgb> variance, i
                 }
             const glm::dvec3 here(picture[p]), all = (sum + here) / (count + 1.0);
             const glm::dvec3 others = count > 0.0 ? sum / count : here;
-            s.others[p] = std::max(mean_square(others), mean_square(here) - certain * own);
+            const double at_least = std::sqrt(mean_square(here)) - certain * std::sqrt(own);
+            s.others[p] = std::max(mean_square(others), at_least > 0.0 ? at_least * at_least : 0.0);
             s.all[p] = mean_square(all);
         }
     });

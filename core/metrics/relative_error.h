@@ -32,7 +32,7 @@ struct RelativeWeights {
 RelativeWeights relative_weights(std::span<const Rgb> reference);
 /// Weights of a noisy reference whose variance is known, row by row. |r|^2 of a pixel is that of its
 /// neighbours: those of 5 x 5 pixels that differ from it by three standard deviations or less; and no less
-/// than the pixel is for certain, by two of its own, such as one that a lamp covers in part. From the pixel
+/// than the pixel is for certain, by three of its own, such as one that a lamp covers in part. From the pixel
 /// itself, those that happen to be too bright would have weights too small. Throws std::invalid_argument when
 /// a size does not fit.
 RelativeWeights relative_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,

@@ -246,3 +246,22 @@ TEST_CASE("A lamp in the picture does not hide the noise", "[relative][film]") {
     CHECK(with == Approx(without).epsilon(0.05));  // four of 324 pixels, and their neighbours
     CHECK(without == Approx(1.0 / std::sqrt(8.0)).epsilon(0.12));
 }
+
+TEST_CASE("A pixel's own noise is not in its weight", "[relative][statistics]") {
+    // By the weights of a noisy picture, its own noise counts as much as that of another one.
+    constexpr int size = 64, count = size * size;
+    double own = 0.0, other = 0.0;
+    constexpr int pictures = 20;
+    for (std::uint64_t seed = 0; seed < pictures; ++seed) {
+        Rng rng(hash_keys(seed, 77));
+        Picture picture;
+        for (int p = 0; p < count; ++p) picture.push_back(Rgb(float(1.0 + 0.5 * normal(rng))));
+        const RelativeWeights weights = relative_weights(picture, Picture(count, Rgb(0.25f)), size, size);
+        for (std::size_t p = 0; p < count; ++p) {
+            own += weights.weight[p] * sqr(double(picture[p].x) - 1.0);
+            other += weights.weight[p] * sqr(0.5 * normal(rng));
+        }
+    }
+    // The square of a normal variable has the variance 2.
+    CHECK(std::fabs(own / other - 1.0) < 3.0 * std::sqrt(2.0 * 2.0 / double(pictures * count)));
+}
