@@ -92,10 +92,9 @@ double projection(const core::PassImage& image, const core::Film& film, std::siz
 core::Film make_film(const core::Scene& scene, const core::Integrator& integrator) {
     const core::FilmSettings& film = scene.film();
     std::vector<core::Layer> layers = integrator.layers(scene);
-    const bool halves =
-        film.interval && integrator.plan(scene, core::find_requirements(scene)).error_is_known();
-    core::FilmMemory(film.width, film.height, layers, false, {}, halves).require({});
-    return {film.width, film.height, std::move(layers), false, halves};
+    const core::PassSplit split = integrator.plan(scene, core::find_requirements(scene)).split(film.interval);
+    core::FilmMemory(film.width, film.height, layers, false, {}, split).require({});
+    return {film.width, film.height, std::move(layers), false, split};
 }
 
 }  // namespace

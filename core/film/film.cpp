@@ -78,26 +78,40 @@ class Film::NewBlock {
     std::size_t joins_ = 0, target_ = 0;
 };
 
-Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares, bool halves)
-    : width_(width), height_(height), layers_(std::move(layers)), all_squares_(all_squares), halves_(halves) {
+KeptSums KeptSums::from_bits(std::uint32_t bits) {
+    if (bits > 5) throw std::invalid_argument("sums of an unknown kind");
+    return {(bits & 1u) != 0, PassSplit(bits >> 1)};
+}
+
+Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares, PassSplit split)
+    : width_(width), height_(height), layers_(std::move(layers)), all_squares_(all_squares), split_(split) {
     if (width < 1 || height < 1) throw std::invalid_argument("a film needs at least one pixel");
     sums_.assign(layers_.size(), ExactSums(3 * pixels()));
     for (const Layer& layer : layers_)
         layer_squares_.emplace_back(all_squares_ || layer.squares ? 3 * pixels() : 0);
     for (std::size_t i = 0; i < layers_.size(); ++i) {
-        const std::size_t kept = halves_ && has_squares(i) && !layers_[i].auxiliary ? 3 * pixels() : 0;
+        const std::size_t kept = splits(i) ? 3 * pixels() : 0;
         odd_sums_.emplace_back(kept), odd_squares_.emplace_back(kept);
     }
     replaced_.resize(layers_.size());
     find_parts();
     find_where();
+    if (split_ == PassSplit::groups && parts() > 1)
+        throw std::invalid_argument("groups of passes of several parts");
+}
+
+bool Film::splits(std::size_t layer) const {
+    const bool wanted = split_ == PassSplit::halves   ? !layers_[layer].auxiliary
+                        : split_ == PassSplit::groups ? layers_[layer].missing
+                                                      : false;
+    return wanted && has_squares(layer);
 }
 
 void Film::find_parts() {
     std::size_t count = 1;
     for (const Layer& layer : layers_) count = std::max(count, layer.part + 1);
     if (count > layers_.size() && count > 1) throw std::invalid_argument("a part without layers");
-    parts_.assign(count, Part(pixels(), halves_));
+    parts_.assign(count, Part(pixels(), split_));
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         Part& part = parts_[layers_[i].part];
         part.layers.push_back(i);
@@ -147,7 +161,8 @@ double Film::passes_of(std::size_t layer, std::size_t pixel) const {
 }
 
 float Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
-    const bool odd = halves_ && part.odd_is_next();
+    const bool odd = split_ != PassSplit::whole && part.odd_is_next();
+    ExactSums* const group = part.groups.empty() ? nullptr : &part.groups[part.next_group()];
     double beauty[3] = {0.0, 0.0, 0.0};
     for (std::size_t of_image = 0; of_image < part.layers.size(); ++of_image) {
         const std::size_t layer = part.layers[of_image];
@@ -164,7 +179,9 @@ float Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
     for (int c = 0; c < 3; ++c) {
         const std::size_t i = 3 * pixel + std::size_t(c);
         part.beauty_squares.add(i, beauty[c] * beauty[c]);
-        if (odd) part.odd_beauty.add(i, beauty[c]), part.odd_squares.add(i, beauty[c] * beauty[c]);
+        if (group) group->add(i, beauty[c]);
+        if (odd && split_ == PassSplit::halves)
+            part.odd_beauty.add(i, beauty[c]), part.odd_squares.add(i, beauty[c] * beauty[c]);
     }
     return float((beauty[0] + beauty[1] + beauty[2]) / 3.0);
 }
@@ -201,7 +218,7 @@ void Film::add_pass(const PassImage& image, std::size_t index, double work) {
 
 void Film::add(const Film& next) {
     bool fits = next.width_ == width_ && next.height_ == height_ && next.layers_.size() == layers_.size() &&
-                next.parts() == parts() && next.all_squares_ == all_squares_ && next.halves_ == halves_;
+                next.parts() == parts() && next.all_squares_ == all_squares_ && next.split_ == split_;
     for (std::size_t i = 0; fits && i < layers_.size(); ++i)
         fits = layers_[i].name == next.layers_[i].name && layers_[i].part == next.layers_[i].part &&
                has_squares(i) == next.has_squares(i);
@@ -224,6 +241,7 @@ void Film::add(const Film& next) {
         const Part& more = next.parts_[i];
         add_sums(part.beauty_squares, more.beauty_squares), add_sums(part.odd_beauty, more.odd_beauty);
         add_sums(part.odd_squares, more.odd_squares);
+        for (std::size_t g = 0; g < part.groups.size(); ++g) add_sums(part.groups[g], more.groups[g]);
         while (part.half_squares.size() < more.half_squares.size()) part.half_squares.emplace_back(pixels());
         for (std::size_t k = 0; k < more.half_squares.size(); ++k)
             add_sums(part.half_squares[k], more.half_squares[k]);

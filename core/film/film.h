@@ -10,7 +10,8 @@
 //
 // The passes of a part are two independent halves, those of even and those of odd index: their Sobol points
 // are of different scrambles (core/render/camera_ray.h). What a filter makes of one half can be held against
-// the other (core/metrics/halves_error.h).
+// the other (core/metrics/halves_error.h). Or they are eight independent groups, whose spread shows noise
+// that pixels share (core/metrics/group_error.h).
 #pragma once
 
 #include <array>
@@ -23,19 +24,25 @@
 
 #include "core/film/exact_sums.h"
 #include "core/film/pass_image.h"
+#include "core/math/sampler.h"
 #include "core/metrics/halves_error.h"
 #include "core/objects/memory_budget.h"
 
 namespace mote::core {
 
+struct PassGroup;
+
+/// Independent parts of the passes that a film has sums over.
+enum class PassSplit : std::uint8_t { whole, halves, groups };
+
 /// Sums that a film keeps besides those of its layers.
 struct KeptSums {
-    bool all_squares = false;  ///< squares of every layer
-    bool halves = false;       ///< sums over the passes of odd index
+    bool all_squares = false;            ///< squares of every layer
+    PassSplit split = PassSplit::whole;  ///< sums over parts of the passes
     /// Number that files hold.
-    std::uint32_t bits() const { return (all_squares ? 1u : 0u) | (halves ? 2u : 0u); }
-    /// Inverse of bits().
-    static KeptSums from_bits(std::uint32_t bits) { return {(bits & 1u) != 0, (bits & 2u) != 0}; }
+    std::uint32_t bits() const { return (all_squares ? 1u : 0u) | std::uint32_t(split) << 1; }
+    /// Inverse of bits(). Throws std::invalid_argument for others.
+    static KeptSums from_bits(std::uint32_t bits);
 };
 
 /// Sums over passes, pixel by pixel and layer by layer: the picture is their mean.
@@ -44,17 +51,20 @@ class Film {
     static constexpr std::uint32_t max_passes = ExactSums::max_terms;  ///< of a part
 
     /// `all_squares`: keep the sum of squares of every layer, not only of the beauty and of those that
-    /// require it. `halves`: keep sums over the passes of odd index besides, of the beauty and of layers of
-    /// the beauty with squares; then its error() is known. Throws std::invalid_argument when two layers
-    /// have one name, a Layer::where names none or one of another part, or a part has no layer.
-    Film(int width, int height, std::vector<Layer> layers, bool all_squares = false, bool halves = false);
+    /// require it. `split`: keep sums over parts of the passes besides; then its error() is known. Halves:
+    /// over the passes of odd index, of the beauty and of layers of the beauty with squares. Groups: of the
+    /// beauty over each group, and over the passes of odd index of layers of missing light. Throws
+    /// std::invalid_argument when two layers have one name, a Layer::where names none or one of another part,
+    /// a part has no layer, or there are several in groups.
+    Film(int width, int height, std::vector<Layer> layers, bool all_squares = false,
+         PassSplit split = PassSplit::whole);
 
     int width() const { return width_; }                                               ///< [pixels]
     int height() const { return height_; }                                             ///< [pixels]
     std::size_t pixels() const { return std::size_t(width_) * std::size_t(height_); }  ///< width times height
     std::span<const Layer> layers() const { return layers_; }  ///< all of them, in order
     std::size_t parts() const { return parts_.size(); }        ///< how many
-    KeptSums kept() const { return {all_squares_, halves_}; }  ///< of the constructor
+    KeptSums kept() const { return {all_squares_, split_}; }   ///< of the constructor
     std::uint32_t pass_count() const;                          ///< of all parts together
     std::uint32_t pass_count(std::size_t part) const { return parts_.at(part).passes; }  ///< of one part
     /// Index of the first pass of a part that the film holds, or will hold.
@@ -141,9 +151,10 @@ class Film {
     };
     GainAndNoise gain_and_noise() const;  ///< noise() and what it is computed with
     /// The error of the beauty with the bias of post-processes, from the two halves of the passes
-    /// (core/metrics/halves_error.h): for passes without bias whose noise is independent from pixel to pixel.
-    /// Nothing where the film keeps no halves, a half of a part has fewer than two passes, or a post-process
-    /// has not worked on the halves.
+    /// (core/metrics/halves_error.h): for passes without bias whose noise is independent from pixel to pixel;
+    /// or from their groups and the light that is missing (core/metrics/group_error.h), without post-process.
+    /// Nothing where the film keeps neither, a half of a part has fewer than two passes, a group none, or a
+    /// post-process has not worked on the halves.
     /// Weights of errors are relative to the light of a pixel. Where every layer is filtered, that is the
     /// picture's. Else it is known with noise, and the interval holds what two kinds of weights make of it:
     /// by the picture, a rare bright path is taken for a bright place, where it counts for little; by the
@@ -168,16 +179,19 @@ class Film {
         double work = 0.0;
         ExactSums beauty_squares;                ///< three channels
         ExactSums odd_beauty, odd_squares;       ///< of the passes of odd index
+        std::vector<ExactSums> groups;           ///< of the beauty: three channels
         std::vector<Block> blocks;               ///< the largest that its passes consist of, in order
         std::vector<ExactSums> half_squares;     ///< [k]: how the halves of blocks of 2^(k+1) differ, squared
         std::vector<std::size_t> layers;         ///< in order
         std::vector<std::size_t> beauty_layers;  ///< those that are not auxiliary, in order
-        Part(std::size_t pixels, bool halves)
+        Part(std::size_t pixels, PassSplit split)
             : beauty_squares(3 * pixels),
-              odd_beauty(halves ? 3 * pixels : 0),
-              odd_squares(halves ? 3 * pixels : 0) {}
+              odd_beauty(split == PassSplit::halves ? 3 * pixels : 0),
+              odd_squares(split == PassSplit::halves ? 3 * pixels : 0),
+              groups(split == PassSplit::groups ? pass_group_count : 0, ExactSums(3 * pixels)) {}
         /// True if the next pass has an odd index.
         bool odd_is_next() const { return (first + passes) % 2 == 1; }
+        std::uint32_t next_group() const { return (first + passes) % pass_group_count; }
         /// Number of complete blocks of 2^(k+1) passes.
         std::uint32_t complete_blocks(std::size_t k) const;
     };
@@ -194,6 +208,10 @@ class Film {
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
     bool has_replaced_variance() const;
     bool every_layer_is_filtered() const;  ///< by halves: set_halves()
+    bool splits(std::size_t layer) const;  ///< keeps sums over the passes of odd index
+    std::optional<PictureError> error_of_halves() const;
+    std::optional<PictureError> error_of_groups() const;
+    std::vector<PassGroup> groups_of_passes() const;
     /// Variance of the beauty as it is shown: that of set_mean() in place of the variance of a layer's
     /// passes.
     std::vector<Rgb> shown_variance_of_mean(double unit) const;
@@ -212,7 +230,8 @@ class Film {
 
     int width_, height_;
     std::vector<Layer> layers_;
-    bool all_squares_, halves_;
+    bool all_squares_;
+    PassSplit split_;
     std::uint64_t non_finite_ = 0;
     std::vector<Part> parts_;
     std::vector<ExactSums> sums_;                    ///< one per layer: [3 pixel + channel]

@@ -91,7 +91,12 @@ bool Film::every_layer_is_filtered() const {
 }
 
 std::optional<PictureError> Film::error() const {
-    if (!halves_) return std::nullopt;
+    return split_ == PassSplit::halves   ? error_of_halves()
+           : split_ == PassSplit::groups ? error_of_groups()
+                                         : std::nullopt;
+}
+
+std::optional<PictureError> Film::error_of_halves() const {
     for (std::size_t i = 0; i < parts(); ++i)
         if (half_passes(i, 1) < 2 || half_passes(i, 0) < 2) return std::nullopt;
     for (std::size_t i = 0; i < layers_.size(); ++i)
@@ -115,9 +120,7 @@ std::optional<PictureError> Film::error() const {
     const PictureError low =
         blocks(relative_weights(picture, shown_variance_of_mean(1.0), width_, height_)).of_picture();
     const PictureError high = blocks(weights_of_halves(a.shown, b.shown, width_, height_)).of_picture();
-    return PictureError{std::sqrt(0.5 * (low.error * low.error + high.error * high.error)),
-                        std::min(low.low, high.low), std::max(low.high, high.high),
-                        std::max(low.rule_high, high.rule_high)};
+    return PictureError::of_both(low, high);
 }
 
 }  // namespace mote::core

@@ -12,7 +12,7 @@ constexpr std::uint32_t unknown_passes = 1023;
 }  // namespace
 
 FilmMemory::FilmMemory(int width, int height, std::span<const Layer> layers, bool all_squares,
-                       std::optional<std::uint32_t> passes, bool halves)
+                       std::optional<std::uint32_t> passes, PassSplit split)
     : width_(width), height_(height), layers_(layers.size()) {
     const double pixels = double(width) * double(height);
     constexpr double sum = 2.0 * sizeof(std::int64_t) + 1.0;  // of ExactSums
@@ -20,19 +20,28 @@ FilmMemory::FilmMemory(int width, int height, std::span<const Layer> layers, boo
     for (const Layer& layer : layers) {
         const bool squares = all_squares || layer.squares;
         parts = std::max(parts, double(layer.part) + 1.0);
-        kept += !squares ? 1.0 : halves && !layer.auxiliary ? 4.0 : 2.0;
+        const bool split_too =
+            (split == PassSplit::halves && !layer.auxiliary) || (split == PassSplit::groups && layer.missing);
+        kept += !squares ? 1.0 : split_too ? 4.0 : 2.0;
         planes += layer.auxiliary && squares ? 2.0 : 1.0;
     }
     // 2^k passes have k differences of blocks; a block that waits for its other half is one of these in
     // floats.
     const double levels = double(std::bit_width(passes.value_or(unknown_passes)));
     const double blocks = levels * sizeof(float) + std::max(0.0, levels - 1.0) * sum;
-    begin_ = pixels * 3.0 * sum * (kept + (halves ? 3.0 : 1.0) * parts);
+    const double of_beauty = split == PassSplit::halves   ? 3.0
+                             : split == PassSplit::groups ? 1.0 + double(pass_group_count)
+                                                          : 1.0;
+    begin_ = pixels * 3.0 * sum * (kept + of_beauty * parts);
     sums_ = begin_ + pixels * parts * blocks;
     pass_ = pixels * (double(layers.size()) * sizeof(Rgb) + parts);
     // Picture, variances, and their squares while they are smoothed, beside the image of the last pass.
     pass_ += pixels * (4.0 * sizeof(Rgb) + 6.0 * sizeof(double));
-    if (halves) pass_ += pixels * 8.0 * sizeof(Rgb);  // means, what is shown of them, variances
+    if (split == PassSplit::halves)
+        pass_ += pixels * 8.0 * sizeof(Rgb);  // means, what is shown of them, variances
+    if (split == PassSplit::groups)           // means, deviations from them, squares without noise
+        pass_ += pixels * double(pass_group_count) * (2.0 * sizeof(Rgb) + sizeof(double)) +
+                 pixels * (6.0 * sizeof(Rgb) + 2.0 * sizeof(double));
     picture_ = pixels * planes * sizeof(Rgb);
 }
 

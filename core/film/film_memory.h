@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "core/film/pass_image.h"
+#include "core/film/film.h"
 #include "core/objects/memory_budget.h"
 
 namespace mote::core {
@@ -17,7 +17,7 @@ class FilmMemory {
   public:
     /// `passes`: nothing where a limit in time or noise ends the render; then as many as a thousand.
     FilmMemory(int width, int height, std::span<const Layer> layers, bool all_squares = false,
-               std::optional<std::uint32_t> passes = {}, bool halves = false);
+               std::optional<std::uint32_t> passes = {}, PassSplit split = PassSplit::whole);
 
     double begin() const { return begin_; }  ///< of a Film without passes [B]
     double sums() const { return sums_; }    ///< of a Film after all passes [B]

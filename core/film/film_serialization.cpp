@@ -67,6 +67,7 @@ void Film::for_each_array(AnyFilm& film, const Body& body) {
         ExactSums::for_each_array(part.beauty_squares, body);
         ExactSums::for_each_array(part.odd_beauty, body);
         ExactSums::for_each_array(part.odd_squares, body);
+        for (auto& sums : part.groups) ExactSums::for_each_array(sums, body);
         for (auto& block : part.blocks) body(block.sums);
         for (auto& sums : part.half_squares) ExactSums::for_each_array(sums, body);
     }
@@ -139,7 +140,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         least += min_packed_size(numbers);
         if (least > content.size()) throw InputError("the film is damaged: its length is wrong");
     };
-    Film read(width_, height_, layers_, all_squares_, halves_);
+    Film read(width_, height_, layers_, all_squares_, split_);
     read.non_finite_ = header.non_finite;
     for (std::size_t i = 0; i < heads.size(); ++i) {
         Part& part = read.parts_[i];
@@ -178,7 +179,8 @@ void Film::deserialize(std::span<const std::byte> bytes) {
     for (const Part& part : read.parts_) {
         for (const ExactSums* sums : {&part.beauty_squares, &part.odd_beauty, &part.odd_squares})
             fits = fits && can_be(*sums, part.passes);
-        for (const ExactSums& squares : part.half_squares) fits = fits && can_be(squares, part.passes);
+        for (const auto* sums : {&part.half_squares, &part.groups})
+            for (const ExactSums& s : *sums) fits = fits && can_be(s, part.passes);
     }
     if (!fits) throw InputError("the film is damaged: it holds a number that cannot be");
     *this = std::move(read);

@@ -22,6 +22,8 @@ struct Layer {
                               ///< is one (a position where nothing was hit is no position); "": of all
     TransportSet transport = {};  ///< cell that it holds or adds to; empty: none
     std::size_t part = 0;         ///< of the picture: layers of one part have their passes together
+    /// Light of the scene that the beauty leaves out, for Film::error(); auxiliary, with squares. One layer.
+    bool missing = false;
 };
 
 /// The picture of one pass: one value per pixel and layer, row by row from the top. Zero at the start.

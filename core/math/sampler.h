@@ -4,7 +4,7 @@
 // hash-based Owen scrambling"): pairs of dimensions are padded, each with its own shuffle of the pass index
 // and its own nested uniform scramble, so that the passes of one pixel form a (0,2)-sequence in every pair.
 // In halves, passes of even and of odd index have two scrambles, so that their means are independent of each
-// other (core/film/film.h).
+// other (core/film/film.h); in groups each of eight has its own.
 //
 // Eight pairs are made at once, in vector instructions, when the first of them is wanted.
 #pragma once
@@ -15,8 +15,11 @@
 
 namespace mote::core {
 
-/// Independent numbers, Owen-scrambled Sobol points, or those in halves.
-enum class SamplerKind : std::uint8_t { independent, sobol, sobol_halves };
+/// Independent numbers, Owen-scrambled Sobol points, or those in halves, or in groups.
+enum class SamplerKind : std::uint8_t { independent, sobol, sobol_halves, sobol_groups };
+
+/// Groups of passes: pass i is of group i modulo their number.
+inline constexpr std::uint32_t pass_group_count = 8;
 
 class Sampler {
   public:
@@ -24,7 +27,8 @@ class Sampler {
     Sampler(SamplerKind kind, std::uint64_t seed, std::uint32_t pass, std::uint64_t item,
             std::uint32_t stream = 0)
         : kind_(kind), pass_(pass), key_(hash_keys(seed, item, stream)) {
-        if (kind == SamplerKind::sobol_halves) key_ = hash_keys(key_, pass % 2), pass_ = pass / 2;
+        if (kind == SamplerKind::sobol_halves) split(2);
+        if (kind == SamplerKind::sobol_groups) split(pass_group_count);
     }
 
     /// The next number in [0, 1); takes a pair of dimensions.
@@ -40,6 +44,7 @@ class Sampler {
     Rng make_rng() const { return Rng(hash_keys(key_, pass_, 0x7261636bull, dimension_)); }
 
   private:
+    void split(std::uint32_t groups) { key_ = hash_keys(key_, pass_ % groups), pass_ /= groups; }
     Vec2 independent(std::uint32_t dimension) const {
         const std::uint64_t h = hash_keys(key_, pass_, dimension);
         return {to_unit_float(std::uint32_t(h)), to_unit_float(std::uint32_t(h >> 32))};

@@ -170,34 +170,28 @@ SharedNoise shared_noise(std::span<const PassGroup> groups, const RelativeWeight
     return result;
 }
 
-RelativeWeights weights_of_groups(std::span<const PassGroup> groups, std::span<const PictureHalf> missing,
-                                  std::span<const Rgb> variance, int width, int height) {
-    check(groups, variance.size());
-    const double passes = passes_of(groups);
-    std::vector<std::vector<double>> squares;
-    for (const PassGroup& group : groups) {
-        Picture light = group.mean, spread(variance.begin(), variance.end());
-        for (Rgb& v : spread) v *= float(passes / group.passes);
-        for (const PictureHalf& half : missing)
-            for (std::size_t p = 0; p < light.size(); ++p)
-                light[p] += 0.5f * half.passes[p], spread[p] += 0.25f * half.variance[p];
-        squares.push_back(squares_without_noise(light, spread, width, height));
-    }
-    std::vector<double> median(variance.size()), here(groups.size());
-    for (std::size_t p = 0; p < median.size(); ++p) {
-        for (std::size_t g = 0; g < groups.size(); ++g) here[g] = squares[g][p];
+RelativeWeights weights_of_groups(std::span<const PassGroup> groups, std::span<const Rgb> missing) {
+    const std::size_t pixels = groups.empty() ? 0 : groups[0].mean.size();
+    check(groups, pixels);
+    if (!missing.empty() && missing.size() != pixels)
+        throw std::invalid_argument("light that is missing does not fit a picture");
+    std::vector<double> median(pixels), here(groups.size());
+    for (std::size_t p = 0; p < pixels; ++p) {
+        for (std::size_t g = 0; g < groups.size(); ++g)
+            here[g] = mean_square(glm::dvec3(groups[g].mean[p]) +
+                                  (missing.empty() ? glm::dvec3(0.0) : glm::dvec3(missing[p])));
         std::sort(here.begin(), here.end());
         median[p] = 0.5 * (here[(here.size() - 1) / 2] + here[here.size() / 2]);
     }
     RelativeWeights result{weights_of_squares(median)};
-    for (std::size_t p = 0; p < median.size(); ++p) result.noise_norm += result.weight[p] * median[p];
+    for (std::size_t p = 0; p < pixels; ++p) result.noise_norm += result.weight[p] * median[p];
     result.norm = result.noise_norm;
     return result;
 }
 
 PictureError group_error(std::span<const PassGroup> groups, std::span<const PictureHalf> missing,
-                         std::span<const Rgb> variance, int width, int height) {
-    const RelativeWeights weights = weights_of_groups(groups, missing, variance, width, height);
+                         const RelativeWeights& weights) {
+    check(groups, weights.weight.size());
     if (!(weights.noise_norm > 0.0)) return {};
     const SharedNoise noise = shared_noise(groups, weights);
     if (!(noise.squared > 0.0) || !std::isfinite(noise.squared)) return {};
@@ -211,10 +205,10 @@ PictureError group_error(std::span<const PassGroup> groups, std::span<const Pict
     const auto [low, high] =
         middle_of_sums(quantiles(noise), quantiles(known, cross, double(groups.size()) - 1.0));
     PictureError result;
-    result.error = std::sqrt(std::max(noise.squared + rest, noise.squared));
+    result.error = std::sqrt(noise.squared + std::max(rest, 0.0));
     result.low = std::sqrt(std::max(0.0, rest + low));
     result.high = std::sqrt(std::max(rest + high, noise.squared));
-    result.rule_high = std::sqrt(std::max(rest, 0.0) + high);
+    result.rule_high = std::sqrt(std::max(rest, 0.0) + std::max(high, noise.squared));
     return result;
 }
 

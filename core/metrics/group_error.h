@@ -28,8 +28,10 @@
 //
 // The interval has the quantiles of the sum of both, A F and a Student's t, as independent variables.
 //
-// Weights. |r|^2 of a pixel is the median over the groups of |Y_g + (a + b) / 2|^2, each without most of its
-// noise: in the mean, a splotch would be taken for a bright place, where an error counts for little.
+// Weights are relative to the light of a pixel, which is known with noise: by the mean of all passes a rare
+// splotch, or a lamp that few passes meet, would be taken for a bright place, where an error counts for
+// little; by the median over groups one that is bright by rare paths for a dark one. Film::error() states
+// what both kinds of weights make of it.
 #pragma once
 
 #include <array>
@@ -60,14 +62,14 @@ struct SharedNoise {
 /// min_pass_groups, or where a size does not fit.
 SharedNoise shared_noise(std::span<const PassGroup> groups, const RelativeWeights& weights);
 
-/// Weights of a picture. `missing`: as in group_error(). `variance`: of the picture's mean, as of independent
-/// passes. Throws as shared_noise().
-RelativeWeights weights_of_groups(std::span<const PassGroup> groups, std::span<const PictureHalf> missing,
-                                  std::span<const Rgb> variance, int width, int height);
+/// Weights by the median over the groups of |Y_g + m|^2, pixel by pixel. `missing`: m without most of its
+/// noise; may be empty. Throws as shared_noise().
+RelativeWeights weights_of_groups(std::span<const PassGroup> groups, std::span<const Rgb> missing = {});
 
 /// The error of the mean of all passes. `missing`: two halves of estimates of m, nothing shown of them
-/// (PictureHalf::shown is not read); none where nothing is missing. Throws as shared_noise().
+/// (PictureHalf::shown is not read); none where nothing is missing. Not known where the weights are those of
+/// a black picture. Throws as shared_noise().
 PictureError group_error(std::span<const PassGroup> groups, std::span<const PictureHalf> missing,
-                         std::span<const Rgb> variance, int width, int height);
+                         const RelativeWeights& weights);
 
 }  // namespace mote::core

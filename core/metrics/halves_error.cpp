@@ -53,6 +53,11 @@ double sum_of(const std::vector<double>& values) {
 
 }  // namespace
 
+PictureError PictureError::of_both(const PictureError& a, const PictureError& b) {
+    return {std::sqrt(0.5 * (a.error * a.error + b.error * b.error)), std::min(a.low, b.low),
+            std::max(a.high, b.high), std::max(a.rule_high, b.rule_high)};
+}
+
 PictureError error_interval(const SquaredError& e) {
     PictureError result;
     if (!(e.norm > 0.0) || !std::isfinite(e.variance)) return result;

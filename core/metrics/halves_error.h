@@ -60,6 +60,8 @@ struct PictureError {
     double high = std::numeric_limits<double>::infinity();   ///< end of the interval
     /// Upper end for a rule that is evaluated again and again, Eq. (5); nowhere below `high`.
     double rule_high = std::numeric_limits<double>::infinity();
+    /// Of errors by two kinds of weights: the interval holds both.
+    static PictureError of_both(const PictureError& a, const PictureError& b);
 };
 
 /// Squared error in the measure of Eq. (2) of relative_error.h, before it is divided by the norm.

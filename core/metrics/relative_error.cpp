@@ -97,13 +97,6 @@ RelativeWeights relative_weights(std::span<const Rgb> reference) {
     return result;
 }
 
-std::vector<double> squares_without_noise(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,
-                                          int width, int height) {
-    check_sizes(picture.size(), variance_of_mean.size());
-    check_sizes(picture.size(), std::size_t(width) * std::size_t(height));
-    return smoothed(picture, variance_of_mean, width, height).others;
-}
-
 RelativeWeights relative_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,
                                  int width, int height) {
     check_sizes(picture.size(), variance_of_mean.size());

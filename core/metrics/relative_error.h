@@ -38,10 +38,6 @@ RelativeWeights relative_weights(std::span<const Rgb> reference);
 RelativeWeights relative_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,
                                  int width, int height);
 
-/// |r|^2 of the pixels, as the weights of a noisy reference have it.
-std::vector<double> squares_without_noise(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,
-                                          int width, int height);
-
 /// Eq. (1) of |r|^2 pixel by pixel, however it was found. 0 everywhere when all of it is black.
 std::vector<double> weights_of_squares(const std::vector<double>& squares);
 

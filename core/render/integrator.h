@@ -42,6 +42,8 @@ struct RenderOptions {
     /// Wanted cells (Layer::transport). The layers of the others may hold anything, and nothing should be
     /// spent on them.
     TransportSet cells = TransportSet::all();
+    /// Passes fill the layer of light that is missing (Layer::missing), where the method has one.
+    bool estimates_missing = false;
     MemoryBudget memory = {};  ///< what maps, trees, points and lights may take
 };
 

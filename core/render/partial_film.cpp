@@ -12,6 +12,7 @@ namespace mote::core {
 namespace {
 
 constexpr FileKind partial_file{{'m', 'o', 't', 'e', 'p', 'a', 'r', 't'}, 2, "a partial film of mote"};
+constexpr std::uint8_t kind_missing = 2;  ///< of a layer; 0: of the beauty, 1: auxiliary
 constexpr std::uint32_t max_layers = 10000, max_edge = 1u << 20;
 
 PartialFilm read_from(std::span<const std::byte> bytes) {
@@ -19,7 +20,7 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
     ByteReader& reader = file.fields;
     std::string about = reader.text();
     const auto width = reader.number<std::uint32_t>(), height = reader.number<std::uint32_t>();
-    const KeptSums kept = KeptSums::from_bits(reader.number<std::uint8_t>());
+    const auto kept_bits = reader.number<std::uint8_t>();
     const auto count = reader.number<std::uint32_t>();
     if (width > max_edge || height > max_edge || count > max_layers)
         throw InputError("damaged (its size cannot be)");
@@ -27,7 +28,8 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
     for (std::uint32_t i = 0; i < count; ++i) {
         Layer& layer = layers.emplace_back();
         layer.name = reader.text(), layer.description = reader.text();
-        layer.auxiliary = reader.number<std::uint8_t>() != 0,
+        const auto kind = reader.number<std::uint8_t>();
+        layer.auxiliary = kind != 0, layer.missing = kind == kind_missing;
         layer.squares = reader.number<std::uint8_t>() != 0;
         layer.where = reader.text(), layer.transport = read_transport(reader.text());
         layer.part = reader.number<std::uint32_t>();
@@ -38,8 +40,9 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
     if (9 * std::uint64_t(count) * min_packed_size(std::uint64_t(width) * height) > file.film.size())
         throw InputError("damaged (its length is wrong)");
     try {
+        const KeptSums kept = KeptSums::from_bits(kept_bits);
         PartialFilm partial{std::move(about),
-                            Film(int(width), int(height), std::move(layers), kept.all_squares, kept.halves)};
+                            Film(int(width), int(height), std::move(layers), kept.all_squares, kept.split)};
         partial.film.deserialize(file.film);
         return partial;
     } catch (const std::invalid_argument& error) {  // of the film's constructor
@@ -60,7 +63,8 @@ void write_partial_film(const std::string& path, const PartialFilm& partial) {
     head.number(std::uint32_t(film.layers().size()));
     for (const Layer& layer : film.layers()) {
         head.text(layer.name), head.text(layer.description);
-        head.number(std::uint8_t(layer.auxiliary)), head.number(std::uint8_t(layer.squares));
+        head.number(std::uint8_t(layer.missing ? kind_missing : layer.auxiliary)),
+            head.number(std::uint8_t(layer.squares));
         head.text(layer.where), head.text(transport_name(layer.transport));
         head.number(std::uint32_t(layer.part));
     }

@@ -37,11 +37,14 @@ std::unique_ptr<PixelFilter> film_filter(const Scene& scene) {
     return make_pixel_filter(film.filter, film.filter_radius, film.filter_stddev);
 }
 
-RenderOptions render_options(const Scene& scene, std::uint64_t seed, CancelToken cancelled) {
+RenderOptions render_options(const Scene& scene, std::uint64_t seed, PassSplit split, CancelToken cancelled) {
     const FilmSettings& film = scene.film();
     SamplerKind sampler = sampler_kind(film.sampler);
-    if (film.interval && sampler == SamplerKind::sobol) sampler = SamplerKind::sobol_halves;
-    return {seed, film.width, film.height, sampler, cancelled};
+    if (sampler == SamplerKind::sobol && split == PassSplit::halves) sampler = SamplerKind::sobol_halves;
+    if (sampler == SamplerKind::sobol && split == PassSplit::groups) sampler = SamplerKind::sobol_groups;
+    RenderOptions options{seed, film.width, film.height, sampler, cancelled};
+    options.estimates_missing = split == PassSplit::groups;
+    return options;
 }
 
 std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
@@ -54,7 +57,7 @@ std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
 PassRunner::PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
                        std::vector<HitFeature> features, CancelToken cancelled, const MemoryBudget& memory)
     : film_(film), filter_(film_filter(scene)) {
-    RenderOptions options = render_options(scene, seed, cancelled);
+    RenderOptions options = render_options(scene, seed, film.kept().split, cancelled);
     options.memory = memory;
     estimator_ = timed_prepare(scene, integrator, options, build_seconds_);
     for (std::size_t part = 0; part < film.parts(); ++part)
@@ -63,7 +66,8 @@ PassRunner::PassRunner(const Scene& scene, const Integrator& integrator, std::ui
         throw std::invalid_argument("the film has no layers for the features");
     const std::size_t first_layer = images_.front().layers() - features.size();
     if (!features.empty())
-        features_.emplace(scene, render_options(scene, seed), std::move(features), first_layer);
+        features_.emplace(scene, render_options(scene, seed, film.kept().split), std::move(features),
+                          first_layer);
 }
 
 bool PassRunner::run_pass(const std::atomic<bool>& cancelled) {

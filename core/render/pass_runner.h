@@ -19,8 +19,10 @@ std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
 
 /// Filter of a scene's film. Throws InputError for an unknown one.
 std::unique_ptr<PixelFilter> film_filter(const Scene& scene);
-/// Size and sampler of a scene's film. Throws InputError for an unknown sampler.
-RenderOptions render_options(const Scene& scene, std::uint64_t seed, CancelToken cancelled = {});
+/// Size and sampler of a scene's film with such parts of the passes. Throws InputError for an unknown
+/// sampler.
+RenderOptions render_options(const Scene& scene, std::uint64_t seed, PassSplit split,
+                             CancelToken cancelled = {});
 
 class PassRunner {
   public:

@@ -32,8 +32,13 @@ void append_table(std::string& text, const std::string& title, const std::vector
 }  // namespace
 
 std::string Plan::no_error_because() const {
-    if (!missing.empty()) return missing.front().topic + " is missing";
+    if (!missing.empty() && !error_by_groups) return missing.front().topic + " is missing";
     return error_unknown.empty() ? noise_unknown : error_unknown;
+}
+
+PassSplit Plan::split(bool wanted) const {
+    if (!wanted || !error_is_known()) return PassSplit::whole;
+    return error_by_groups ? PassSplit::groups : PassSplit::halves;
 }
 
 void Plan::run(std::string topic, std::string choice, std::string reason) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/film/film.h"
+
 namespace mote::core {
 
 struct PlanEntry {
@@ -24,10 +26,13 @@ struct Plan {
     /// The light that is found so rarely that the spread between passes misses it: no noise is stated. ""
     /// where the spread shows all.
     std::string noise_unknown;
-    /// The reason why halves of the passes do not show the error (core/metrics/halves_error.h). "" where they
-    /// do: passes have the light of the scene as their mean, and noise that is independent from pixel to
-    /// pixel.
+    /// The reason why parts of the passes do not show the error. "" where halves do
+    /// (core/metrics/halves_error.h): passes have the light of the scene as their mean, and noise that is
+    /// independent from pixel to pixel; or groups (error_by_groups).
     std::string error_unknown = "its passes may err alike, or pixels in common";
+    /// Pixels of a pass share noise, which groups of passes show (core/metrics/group_error.h), and passes
+    /// estimate what is missing from their mean (Layer::missing).
+    bool error_by_groups = false;
 
     /// Adds to `runs`.
     void run(std::string topic, std::string choice, std::string reason);
@@ -35,10 +40,12 @@ struct Plan {
     void leave_out(std::string topic, std::string choice, std::string reason);
     /// Adds to `missing`.
     void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
-    /// Reason why halves of the passes do not show the error of the image: error_unknown, noise_unknown, or
+    /// Reason why parts of the passes do not show the error of the image: error_unknown, noise_unknown, or
     /// what is missing. "" where they do.
     std::string no_error_because() const;
-    bool error_is_known() const { return no_error_because().empty(); }  ///< true where halves show it
+    bool error_is_known() const { return no_error_because().empty(); }  ///< true where they show it
+    /// Parts that show it; the whole where it is not `wanted`, or not known.
+    PassSplit split(bool wanted) const;
     /// Messages for the user: a warning for each thing that takes very long or that this integrator cannot
     /// compute, and one line with the switches of a topic for what it leaves out by choice.
     std::vector<std::string> warnings() const;

@@ -77,7 +77,8 @@ class PassLoop {
     }
     /// The error, or nothing where the passes do not show it.
     std::optional<PictureError> stated(const Film& film) const {
-        if (!request_.halves || !std::isfinite(known(1.0)) || found_no_light()) return std::nullopt;
+        if (request_.split == PassSplit::whole || !std::isfinite(known(1.0)) || found_no_light())
+            return std::nullopt;
         return film.error();
     }
     /// The variance of 64 normal samples has a relative standard error of sqrt(2 / 63), a sixth; that of
@@ -246,7 +247,7 @@ class PassLoop {
         const std::optional<PictureError> error = stated(result_.film);
         look(error);
         const double finished = changes_noise() ? result_.film.noise() : 0.0;
-        if (request_.halves) finished_error_ = error.value_or(PictureError());
+        if (request_.split != PassSplit::whole) finished_error_ = error.value_or(PictureError());
         if (!stop_.error) state_.error = finished_error_;  // a rule must not depend on previews
         preview_means_ = result_.film.exchange_replaced(), preview_passes_ = state_.passes;
         if (!changes_noise()) return;
@@ -338,18 +339,18 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     if (!request.checkpoint_path.empty() && !request.resume)
         require_own_checkpoint(request.checkpoint_path, request.content_hash);
     StopRule stop = request.stop;
-    if (stop.error && !request.halves)
+    if (stop.error && request.split == PassSplit::whole)
         throw InputError("the error of this image is not known, and a limit on it would not end the render");
     if (!stop.passes && !stop.seconds && !stop.noise && !stop.error && !request.enough)
         stop.passes = std::uint32_t(settings.sample_count);
     if (request.range) stop = {request.range->end - request.range->first, {}, {}, {}};
     const std::vector<Layer> layers = film_layers(scene, integrator, request.features);
     const FilmMemory needed(settings.width, settings.height, layers, request.all_squares, stop.passes,
-                            request.halves);
+                            request.split);
     needed.require(request.memory, request.resume ? needed.sums() : 0.0);  // a checkpoint is read beside it
     RenderResult result = with_memory_for(needed.purpose() + memory_text(needed.peak()), [&] {
         return RenderResult{
-            Film(settings.width, settings.height, layers, request.all_squares, request.halves), {}, false, 0};
+            Film(settings.width, settings.height, layers, request.all_squares, request.split), {}, false, 0};
     });
     if (request.begin_with) begin_with(*request.begin_with, result.film);
     if (request.resume) resume(request, result);  // before the work of prepare(): it may be refused

@@ -60,7 +60,7 @@ struct RenderRequest {
     std::vector<HitFeature> features;  ///< become layers of the film, behind those of the integrator
     MemoryBudget memory;               ///< of the film, and of what the integrator builds
     bool noise_is_known = true;        ///< false: none is stated (Plan::noise_unknown)
-    bool halves = false;               ///< the film keeps halves of the passes, and an error is stated
+    PassSplit split = PassSplit::whole;       ///< the film keeps parts of the passes, and an error is stated
     std::function<bool(const Film&)> enough;  ///< a rule of the caller's, tested with the noise rule
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after
@@ -105,7 +105,7 @@ struct RenderResult {
 inline constexpr double max_finish_seconds = 1.0;
 
 /// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
-/// kept. Throws InputError when StopRule::error is set without RenderRequest::halves, when a range of passes
+/// kept. Throws InputError when StopRule::error is set without RenderRequest::split, when a range of passes
 /// is requested and the integrator cannot determine which those are, when a checkpoint does not belong to
 /// this render or is damaged, and when something else stands where it is to be written; OutOfMemory when the
 /// film does not fit into the budget. One that cannot be written is a warning and another try later: the one

@@ -28,6 +28,12 @@ struct EyeSegment {
     const core::PathWeights& before;  ///< weights at its start
 };
 
+/// Factors of the light that a vertex scatters, for transport that leaves some out: of lobes that can be
+/// connected, and of mirrors and glass.
+struct LobeFactors {
+    float connectable = 1.0f, delta = 1.0f;
+};
+
 /// A path from the eye, vertex by vertex.
 template <bool Media>
 class EyePath {
@@ -111,6 +117,7 @@ class EyePath {
     /// The two halves of sample_light(), between which a packet traces the shadow rays of many paths. False:
     /// no light arrives.
     bool begin_light(lights::LightConnection& connection, const lights::LightSampling& how) {
+        if (factors_.connectable == 0.0f) return false;
         if (!lights::begin_connection(vertex_, lights_.choose_light(vertex_.light_receiver(), choices_.x),
                                       sampler_.next_2d(), how, Media, connection))
             return false;
@@ -123,7 +130,8 @@ class EyePath {
     /// Light of a connection that nothing occludes.
     core::Rgb finish_light(const lights::LightConnection& connection, core::WalkContext& context,
                            const lights::LightSampling& how) {
-        return lights::finish_connection<Media>(lights_, vertex_, weights_, state_, connection, context, how);
+        return factors_.connectable *
+               lights::finish_connection<Media>(lights_, vertex_, weights_, state_, connection, context, how);
     }
     /// The vertex at a scattering point of the last segment.
     core::ScatteringVertex vertex_at(const core::Vec3& position, const core::MediumState& state) const {
@@ -137,8 +145,8 @@ class EyePath {
                        const lights::LightSampling& how = {});
     /// False where the last segment is the longest path's last edge.
     bool may_continue() const { return depth_ != limits_.max_depth; }
-    /// Ends the path where it would leave the vertex by a mirror or through glass.
-    void end_at_delta(bool ends) { ends_at_delta_ = ends; }
+    /// Of the vertex where the path is, and of later ones until it is called again.
+    void set_factors(const LobeFactors& factors) { factors_ = factors; }
     /// Multiplies its weight.
     void scale(float factor) { weights_.throughput *= factor; }
 
@@ -196,7 +204,8 @@ class EyePath {
     core::Vec2 choices_{0.0f};   ///< of the light, and of the lobe
     core::LightReceiver previous_;
     bool connected_ = false;  ///< next-event estimation at `previous_` could find the next light
-    bool surface_first_ = true, ends_at_delta_ = false;
+    bool surface_first_ = true;
+    LobeFactors factors_;
     int depth_ = 0, scatterings_ = 0;
     float eta_ = 1.0f;
     /// Density of its directions over that without a guide. Times the throughput it is what surfaces and
@@ -295,12 +304,14 @@ bool EyePath<Media>::scatter(core::WalkContext& context) {
                                               core::TransportMode::radiance);
     if (!guided) return false;
     const core::ScatterSample* const next = &guided->scattering;
-    if (next->delta && ends_at_delta_) return false;
+    const float factor = next->delta ? factors_.delta : factors_.connectable;
+    if (factor == 0.0f) return false;
     if (!next->delta || scatterings_ > 0) {  // mirrors and glass before the first connectable vertex: none
         if (scatterings_ == 0)
             surface_first_ = vertex_.on_surface(), first_cosine_ = vertex_.shading_cosine(next->wi);
         ++scatterings_;
     }
+    scale(factor);
     lights::apply_scattering<Media>(weights_, *next, vertex_.position);
     if (core::is_black(weights_.throughput)) return false;
     if (Media && vertex_.on_surface()) state_ = vertex_.state_towards(state_, next->wi);

@@ -223,6 +223,8 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
         if (plan.noise_unknown.empty()) plan.noise_unknown = own.noise_unknown;
         if (plan.error_unknown.empty() && !own.error_unknown.empty())
             plan.error_unknown = method.integrator->type() + ": " + own.error_unknown;
+        if (plan.error_unknown.empty() && own.error_by_groups)
+            plan.error_unknown = method.integrator->type() + ": pixels of a pass share its noise";
         plan.costly.insert(plan.costly.end(), own.costly.begin(), own.costly.end());
     }
     return plan;

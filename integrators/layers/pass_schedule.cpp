@@ -53,7 +53,7 @@ std::vector<double> part_errors(const Film& film) {
 std::size_t next_part(const Film& film, std::span<const double> left) {
     if (film.parts() == 1) return 0;
     // Variances are compared from two passes a part on, or two of each half.
-    const std::uint32_t pilot_passes = film.kept().halves ? 4 : 2;
+    const std::uint32_t pilot_passes = film.kept().split == PassSplit::halves ? 4 : 2;
     for (std::uint32_t n = 1; n <= pilot_passes; ++n)
         for (std::size_t part = 0; part < film.parts(); ++part)
             if (film.pass_count(part) < n) return part;

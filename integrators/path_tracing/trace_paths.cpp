@@ -11,7 +11,7 @@ template <bool Media>
 void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Media>& packet,
                  PathRecorder<Media>* recorder) {
     using Lane = typename EyePacket<Media>::Lane;
-    const bool bounded = std::isfinite(settings.bound);
+    const bool weighted = std::isfinite(settings.bound) || settings.taken;
     const bool lit_along = Media && settings.equiangular && !settings.equiangular->empty();
     const auto light_along = [&](int i, Lane& lane, const EyeSegment& segment) {
         if (recorder) recorder->on_segment(i, lane, segment);
@@ -23,18 +23,20 @@ void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Med
                                                   segment.start, path.sampler().next_2d(), packet.walk());
     };
     // min(G*, b)/G* of the edge between the first connectable vertex and this one, where no VPL stands on a
-    // delta surface: what continues from there is not part of the bounded transport.
-    const auto bound_edge = [&](int, Lane& lane) {
+    // delta surface: what continues from there is not part of the bounded transport, but of what it lacks.
+    const auto weigh_edge = [&](int, Lane& lane) {
         if (!lane.alive) return;
         EyePath<Media>& path = *lane.path;
-        const bool vpl_edge = path.scatterings() == 1;
-        path.end_at_delta(vpl_edge);
-        if (!vpl_edge) return;
+        if (path.scatterings() != 1) {
+            path.set_factors({});
+            return;
+        }
         const float cosines = path.first_cosine() * path.vertex().geometric_cosine(path.vertex().wo);
-        path.scale(compensation::bounded_factor(cosines, path.segment_length(), settings.bound));
+        const float left = compensation::bounded_factor(cosines, path.segment_length(), settings.bound);
+        path.set_factors(settings.taken ? LobeFactors{1.0f - left, 1.0f} : LobeFactors{left, 0.0f});
     };
     const auto step = [&] {
-        if (bounded) packet.for_each(bound_edge);
+        if (weighted) packet.for_each(weigh_edge);
         packet.sample_lights({lit_along});
         if (recorder) packet.for_each([&](int i, Lane& lane) { recorder->on_vertex(i, lane); });
     };

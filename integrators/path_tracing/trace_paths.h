@@ -6,7 +6,8 @@
 // With a bound b every path is weighted by min(G*, b)/G* at its second edge counted from the first
 // connectable vertex: the edge where a many-light method connects a VPL. The result is the very transport
 // that bounded VPLs estimate (Engelhardt 2013, Sec. 10.1.3), by an independent method: what `mote_vpl` is
-// tested against.
+// tested against. The rest, with 1 - min(G*, b)/G* there and all paths that cross mirrors or glass behind the
+// first vertex, is what bounded VPLs leave out.
 #pragma once
 
 #include "integrators/eye_path/eye_packet.h"
@@ -18,6 +19,7 @@ namespace mote::integrators {
 struct PathSettings {
     EyePathLimits limits{};
     float bound = core::infinity;  ///< b [1/m^2]; infinity: the true transport
+    bool taken = false;            ///< what the bound leaves out, instead of what it leaves
     GuidingSettings guiding{};
     /// Lights, if any, that light media by equi-angular sampling instead of next-event estimation at
     /// collisions. Not together with a bound.

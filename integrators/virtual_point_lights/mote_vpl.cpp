@@ -114,9 +114,17 @@ class MoteVpl final : public Integrator {
     std::vector<Layer> layers(const Scene& scene) const override {
         auto layers = transport_layers(scene.has_media(), settings_.bounded() ? "_bounded" : "");
         for (Layer& layer : settings_.residual->layers(scene.has_media())) layers.push_back(std::move(layer));
+        const bool estimates_missing = scene.film().interval && error_unknown().empty();
         for (Layer& layer : layers)
             layer.squares = settings_.filters && (layer.transport == Transport::indirect ||
                                                   layer.transport == Transport::multiple_scattering);
+        if (estimates_missing)
+            layers.push_back({.name = "missing",
+                              .description = "light that the bound takes, and that comes through mirrors and "
+                                             "glass, estimated by paths",
+                              .auxiliary = true,
+                              .squares = true,
+                              .missing = true});
         return layers;
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
@@ -129,11 +137,24 @@ class MoteVpl final : public Integrator {
     }
 
   private:
+    std::string error_unknown() const;
     void plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirements& r) const;
     void plan_bound(Plan& plan, const Bounds3& surfaces) const;
     void plan_image_space(Plan& plan) const;
     VplSettings settings_;
 };
+
+/// The reason why the passes do not show the error; "" where they do.
+std::string MoteVpl::error_unknown() const {
+    const VplSettings& s = settings_;
+    if (s.residual->restores()) return "compensation has an error of its own";
+    if (s.clamping.enabled) return "roughness clamping blurs reflections";
+    if (s.upsampling > 1) return "upsampling interpolates between pixels";
+    if (s.filters) return "the filter smoothes";
+    if (!s.visibility->is_exact()) return "shadow maps have an error of their own";
+    if (!s.selection->is_unbiased()) return "the selection of VPLs is biased";
+    return "";
+}
 
 /// A light path leaves some three VPLs.
 void MoteVpl::plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirements& r) const {
@@ -187,6 +208,7 @@ void MoteVpl::plan_image_space(Plan& plan) const {
 Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     Plan plan;
     plan.integrator = type();
+    plan.error_unknown = error_unknown(), plan.error_by_groups = plan.error_unknown.empty();
     settings_.light_source(scene)->plan(plan);
     plan_bound(plan, scene.rays().bounds());
     const bool directional = r.any_glossy() || (r.media_anisotropic && r.media_scattering);

@@ -3,6 +3,7 @@
 
 #include <mutex>
 
+#include "integrators/virtual_point_lights/missing_light.h"
 #include "integrators/virtual_point_lights/path_receivers.h"
 #include "integrators/virtual_point_lights/vpl_gatherer.h"
 
@@ -32,6 +33,7 @@ class VplEstimator : public core::Estimator {
           filter_(scene, options, settings.filter,
                   settings.filters ? vpl_layers() : std::vector<LayerFilter::Choice>{}) {
         settings_.eye.wanted = options.cells;
+        if (options.estimates_missing) missing_.emplace(scene, options, settings.eye, bound_);
     }
 
     bool pass(const core::PassContext& context, core::PassImage& image) override {
@@ -51,7 +53,8 @@ class VplEstimator : public core::Estimator {
             gatherer.add_statistics(selection_statistics_);
         };
         return loop_.run(context, image, EyeReceivers<Media>::packet_settings(settings_), gather) &&
-               residual_->pass(context, vpls, image) && visibility_->finish(visible);
+               residual_->pass(context, vpls, image) && visibility_->finish(visible) &&
+               (!missing_ || missing_->pass(context, image, transport_layer_count(Media)));
     }
 
     void finish(core::Film& film, core::CancelToken cancelled) override {
@@ -70,6 +73,7 @@ class VplEstimator : public core::Estimator {
         visibility_->add_statistics(statistics);
         residual_->add_statistics(statistics);
         filter_.add_statistics(statistics);
+        if (missing_) missing_->add_statistics(statistics);
     }
 
   protected:
@@ -121,6 +125,7 @@ class VplEstimator : public core::Estimator {
     std::unique_ptr<compensation::PreparedResidual> residual_;
     ImageLoop<Media> loop_;
     LayerFilter filter_;
+    std::optional<MissingLight<Media>> missing_;
     std::mutex mutex_;
     core::Statistics selection_statistics_;
     std::uint64_t vpls_ = 0, paths_ = 0;

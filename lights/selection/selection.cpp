@@ -23,6 +23,7 @@ class AllTileSelector final : public TileSelector {
 
 class AllVpls final : public Selection {
   public:
+    bool is_unbiased() const override { return true; }
     VplSelector prepare(const SelectionPass& pass) const override {
         return [&vpls = pass.vpls, bound = pass.bound] {
             return std::make_unique<AllTileSelector>(vpls, bound);

@@ -117,6 +117,8 @@ class Selection : public core::Object {
     virtual VplSelector prepare(const SelectionPass& pass) const = 0;
     /// If true, every receiver takes all VPLs, which points and pixels may share out.
     virtual bool takes_all() const { return false; }
+    /// True where the light of all VPLs is the mean of what it gathers.
+    virtual bool is_unbiased() const { return false; }
     /// Name of an option that this selection does not go with; empty where there is none.
     virtual std::string excludes(const GatherOptions& options) const;
     /// Eye paths whose receivers prepare() evaluates.

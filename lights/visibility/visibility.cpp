@@ -18,6 +18,7 @@ class PreparedTraced final : public PreparedVisibility {
 
 class Traced final : public Visibility {
   public:
+    bool is_exact() const override { return true; }
     std::unique_ptr<PreparedVisibility> prepare(const LitScene&, std::uint64_t,
                                                 const MemoryBudget&) const override {
         return prepare_traced_visibility();

@@ -73,6 +73,8 @@ class Visibility : public core::Object {
                                                         const core::MemoryBudget& memory) const = 0;
     /// Maps of lights, for methods that have no VPLs; nothing: lights are traced.
     virtual std::optional<LightMapSettings> light_maps() const { return std::nullopt; }
+    /// True where what lies between a VPL and a receiver is found without an error in the mean.
+    virtual bool is_exact() const { return false; }
     /// Says so where shadow maps are used, for options that do not go with them.
     virtual void declare(GatherOptions&) const {}
     /// `receivers`: of one pass, about.

@@ -49,6 +49,7 @@ const ParameterList<MatrixSettings> parameters{
 class MatrixSelection final : public Selection {
   public:
     explicit MatrixSelection(const MatrixSettings& settings) : settings_(settings) {}
+    bool is_unbiased() const override { return true; }
     VplSelector prepare(const SelectionPass& pass) const override {
         check_memory(pass);
         const BuildStatistics timer(pass.statistics, "matrix");

@@ -131,6 +131,7 @@ const ParameterList<ResamplingSettings> parameters{
 class ResamplingSelection final : public TreeSelection {
   public:
     explicit ResamplingSelection(const ResamplingSettings& settings) : settings_(settings) {}
+    bool is_unbiased() const override { return true; }
     VplSelector prepare(const SelectionPass& pass) const override {
         return [tree = build_tree(pass), &vpls = pass.vpls, bound = pass.bound, s = settings_] {
             return std::make_unique<TileResampling>(vpls, *tree, bound, s.candidates, s.samples);

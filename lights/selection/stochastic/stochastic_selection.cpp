@@ -52,6 +52,7 @@ class StochasticSelection final : public TreeSelection {
     /// VPLs from the clusters of a cut, or each from the root of the tree.
     StochasticSelection(const StochasticSettings& settings, bool by_cut)
         : samples_(settings.samples), by_cut_(by_cut) {}
+    bool is_unbiased() const override { return true; }
     VplSelector prepare(const SelectionPass& pass) const override {
         return [tree = build_tree(pass), &vpls = pass.vpls, bound = pass.bound, samples = samples_,
                 by_cut = by_cut_] {

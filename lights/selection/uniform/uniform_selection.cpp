@@ -41,6 +41,7 @@ class TileUniform final : public SamplingSelector {
 class UniformSelection final : public Selection {
   public:
     explicit UniformSelection(const UniformSettings& settings) : samples_(settings.samples) {}
+    bool is_unbiased() const override { return true; }
     VplSelector prepare(const SelectionPass& pass) const override {
         return [&vpls = pass.vpls, bound = pass.bound, samples = samples_] {
             return std::make_unique<TileUniform>(vpls, bound, samples);

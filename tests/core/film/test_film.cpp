@@ -368,7 +368,7 @@ TEST_CASE("The halves of a film are the passes of even and of odd index", "[film
     std::vector<Layer> with = layers;
     with[2].squares = true;
     const auto filled = [&](std::uint32_t first, std::uint32_t end) {
-        Film film(w, h, with, false, true);
+        Film film(w, h, with, false, PassSplit::halves);
         film.begin_at(0, first);
         for (std::uint32_t i = first; i < end; ++i) film.add_pass(random_pass(w, h, i));
         return film;
@@ -392,7 +392,7 @@ TEST_CASE("The halves of a film are the passes of even and of odd index", "[film
     }
     Film sum = filled(0, 3);
     sum.add(filled(3, 7));
-    Film read(w, h, with, false, true);
+    Film read(w, h, with, false, PassSplit::halves);
     read.deserialize(film.serialize());
     for (const Film* other : {&sum, &read}) {
         CHECK(other->serialize() == film.serialize());
@@ -405,7 +405,7 @@ TEST_CASE("The error of a film includes what a filter of its halves has done", "
     const int w = 40, h = 40;
     std::vector<Layer> with = layers;
     with[2].squares = true;
-    Film film(w, h, with, false, true);
+    Film film(w, h, with, false, PassSplit::halves);
     const auto unfiltered = [&] { return film.error(); };
     for (std::uint32_t i = 0; i < 3; ++i) film.add_pass(random_pass(w, h, i));
     CHECK(!unfiltered());  // a half of one pass
@@ -430,4 +430,46 @@ TEST_CASE("The error of a film includes what a filter of its halves has done", "
     CHECK(std::isfinite(noisy));
     CHECK_THROWS_AS(film.set_halves(0, {half, half}), std::logic_error);
     CHECK_THROWS_AS(film.set_halves(2, {half, {}}), std::invalid_argument);
+}
+
+TEST_CASE("The groups of a film are every eighth pass", "[film][groups]") {
+    const int w = 12, h = 10;
+    std::vector<Layer> with = layers;
+    with[1].squares = with[1].missing = true;
+    const auto filled = [&](std::uint32_t first, std::uint32_t end) {
+        Film film(w, h, with, false, PassSplit::groups);
+        film.begin_at(0, first);
+        for (std::uint32_t i = first; i < end; ++i) film.add_pass(random_pass(w, h, i));
+        return film;
+    };
+    CHECK_FALSE(filled(0, 7).error());  // a group without a pass
+    const Film film = filled(0, 19);
+    const auto error = film.error();
+    REQUIRE(error);
+    CHECK(error->low < error->error);
+    CHECK(error->high > error->error);
+    // The layer of missing light is ten times as bright as in the other film: its error is larger.
+    Film brighter(w, h, with, false, PassSplit::groups);
+    for (std::uint32_t i = 0; i < 19; ++i) {
+        PassImage image = random_pass(w, h, i);
+        for (Rgb& p : image.layer(1)) p *= 10.0f;
+        brighter.add_pass(image);
+    }
+    CHECK(brighter.error()->error > 1.5 * error->error);
+    for (const int half : {0, 1}) {
+        Film alone(w, h, with);
+        for (std::uint32_t i = std::uint32_t(half); i < 19; i += 2) alone.add_pass(random_pass(w, h, i));
+        CHECK(film.half_mean(1, half)[5][0] == Approx(alone.mean(1)[5][0]).epsilon(1e-6));
+    }
+    Film sum = filled(0, 5);
+    sum.add(filled(5, 19));
+    Film read(w, h, with, false, PassSplit::groups);
+    read.deserialize(film.serialize());
+    for (const Film* other : {&sum, &read}) {
+        CHECK(other->serialize() == film.serialize());
+        CHECK(other->error()->high == error->high);
+    }
+    CHECK_THROWS_AS(Film(w, h, with, false, PassSplit::halves).add(film), std::invalid_argument);
+    with[2].part = 1;
+    CHECK_THROWS_AS(Film(w, h, with, false, PassSplit::groups), std::invalid_argument);
 }

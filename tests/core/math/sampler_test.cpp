@@ -89,10 +89,14 @@ TEST_CASE("halves of the passes are nets of their own, and independent of each o
     CHECK(std::fabs(correlation(SamplerKind::sobol_halves)) < 4.5 / 64.0);
     CHECK(std::fabs(correlation(SamplerKind::independent)) < 4.5 / 64.0);
     CHECK(correlation(SamplerKind::sobol) < -0.2);
+    CHECK(std::fabs(correlation(SamplerKind::sobol_groups)) < 4.5 / 64.0);
     for (const std::uint32_t half : {0u, 1u}) {
         std::vector<Vec2> points;
         for (std::uint32_t i = 0; i < 64; ++i)
             points.push_back(point(SamplerKind::sobol_halves, 7, 2 * i + half, 3, 1));
+        CHECK(is_net(points, 6));
+        for (std::uint32_t i = 0; i < 64; ++i)
+            points[i] = point(SamplerKind::sobol_groups, 7, pass_group_count * i + half, 3, 1);
         CHECK(is_net(points, 6));
     }
 }
