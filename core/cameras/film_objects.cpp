@@ -62,7 +62,8 @@ void register_film_objects(Registry& registry) {
              "Numbers in the file: float16 takes half the size."),
          row("interval", &S::interval,
              "State the error, bias of filters included, with an interval of 95 % confidence, where "
-             "the method allows it. The passes are two independent halves, and filters work on each."),
+             "the method allows it. The passes are two independent halves, and filters work on each; of "
+             "`mote_vpl` eight groups, beside paths for the light that is missing."),
          nested("rfilter", &S::filter, Category::rfilter, "gaussian", "Reconstruction filter.")},
         R"(<film type="hdrfilm"><integer name="width" value="640"/><rfilter type="box"/></film>)", make_film);
     register_filters(registry);

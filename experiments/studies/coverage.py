@@ -37,7 +37,7 @@ METHODS = {
     "paths, OIDN": ("mote_layers", {"filter": "oidn", "nested": "volpath"}),
     "volpath": ("volpath", {}),
     "mote_vpl": ("mote_vpl", {}),
-    "mote_vpl, unbounded": ("mote_vpl", {"bound": 0}),
+    "mote_vpl, unbounded": ("mote_vpl", {"bound": -1}),
 }
 
 

@@ -28,10 +28,10 @@ struct EyeSegment {
     const core::PathWeights& before;  ///< weights at its start
 };
 
-/// Factors of the light that a vertex scatters, for transport that leaves some out: of lobes that can be
-/// connected, and of mirrors and glass.
+/// Factors of the light that a vertex scatters, for transport that leaves some out.
 struct LobeFactors {
-    float connectable = 1.0f, delta = 1.0f;
+    float connectable = 1.0f;  ///< of lobes that lights can be connected to
+    float delta = 1.0f;        ///< of mirrors and glass
 };
 
 /// A path from the eye, vertex by vertex.

@@ -147,6 +147,7 @@ class MoteVpl final : public Integrator {
 /// The reason why the passes do not show the error; "" where they do.
 std::string MoteVpl::error_unknown() const {
     const VplSettings& s = settings_;
+    if (!s.bounded()) return "without a bound the variance of its passes is infinite";
     if (s.residual->restores()) return "compensation has an error of its own";
     if (s.clamping.enabled) return "roughness clamping blurs reflections";
     if (s.upsampling > 1) return "upsampling interpolates between pixels";

@@ -60,7 +60,8 @@ void check(const std::string& xml, float bound, std::uint32_t passes, int max_de
     const auto all = render_statistics(
         *scene, *integrator_from(R"(<integrator type="volpath">)" + depth + "</integrator>"),
         {8, passes, 32, {{"far", far}}});
-    check_same_mean(parts, "far", all, "far", {1.04, 0.96});
+    // The test has the power to see an error of 8 %, up or down.
+    check_same_mean(parts, "far", all, "far", {1.08, 0.92});
     CHECK_FALSE(same_mean(parts, "left", all, "far", OnFailure::nothing).passed);  // something is missing
 }
 
