@@ -51,6 +51,14 @@ def title(axes, text, color="black"):
     axes.set_title(text, fontsize=letters(axes.figure), pad=5, color=color)
 
 
+def letter(axes):
+    """Sizes of the words at a plot's axes and in its legend, which are there already."""
+    size = letters(axes.figure)
+    axes.tick_params(labelsize=size)
+    for text in (axes.xaxis.label, axes.yaxis.label, *(axes.get_legend().get_texts() if axes.get_legend() else ())):
+        text.set_fontsize(size)
+
+
 def show(axes, image, exposure, text=None):
     """Fills the axes; pixels stay visible where they are large."""
     axes.imshow(np.clip(image * exposure, 0, 1) ** (1 / 2.2), interpolation="nearest", aspect="auto")
