@@ -91,6 +91,7 @@ def main():
     if not program.is_file():
         print(f"no {program}: build it first (tools/build_release.sh mote_surroundings)", file=sys.stderr)
         return 2
+    measure.use(options.bin)
     size, pixels = (128, 48) if options.quick else (512, 120)
     layouts = run(program, "time", "--size", 512, "--repeat", 5 if options.quick else 15)
     reach = [max(size * x / 512, 2.0) for x in (2, 12, 40, 100)]  # less than a texel would be noise
