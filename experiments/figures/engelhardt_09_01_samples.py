@@ -67,14 +67,18 @@ def draw(paper, ours, full, spectra, length, path):
         rays = picture["MarchedRays"][..., 0]
         coarse = rays.reshape(rays.shape[0] // 2, 2, rays.shape[1] // 2, 2).max(axis=(1, 3))
         show(axes, np.repeat(np.minimum(coarse, 1)[..., None], 3, axis=2), 1, f"{text}: {100 * rays.sum() / rays.size:.1f} %")
-    axes = canvas.panel(740, 2 * TITLE + high + 10, 535, high - 15)
+    plot(canvas.panel(740, 2 * TITLE + high + 10, 535, high - 15), length / np.arange(1, len(spectra[0]) + 1), spectra)
+    canvas.save(path.with_suffix(".png"))
+
+
+def plot(axes, lengths, spectra):
+    """Power by wave length, along lines and across them."""
     for power, name, colour in zip(spectra, ("along epipolar lines", "across"), (plotting.BLUE, plotting.ORANGE)):
-        axes.loglog(length / np.arange(1, len(power) + 1), power, label=name, color=colour)
+        axes.loglog(lengths, power, label=name, color=colour)
     axes.invert_xaxis()
     axes.set(xlabel="wave length [pixels]", ylabel="relative luminance: mean power")
     axes.legend()
     letter(axes)
-    canvas.save(path.with_suffix(".png"))
 
 
 def figure(mote, quick, output):

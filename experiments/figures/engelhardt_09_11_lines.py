@@ -69,9 +69,14 @@ def draw(pictures, path):
         show(panel(column, 0), picture[LAYER][piece], exposure, f"{lines} lines, {picture.value('marched_rays'):.0f} marched rays")
     show(panel(0, 1), full[LAYER][piece], exposure, f"every pixel, {full.value('marched_rays'):.0f} marched rays")
     show(panel(1, 1), pictures["few_full"][LAYER][piece], exposure, f"every pixel, {pictures['few']} steps of equal length")
-    axes = canvas.panel(950, 2 * TITLE + high + 10, 322, high)
-    for k, colour in zip(sorted({k for _, k in table}), (plotting.BLUE, plotting.ORANGE, plotting.GREEN, plotting.BLACK)):
-        axes.loglog(LINES, [100 * error(table[n, k], full) for n in LINES], "o-", color=colour, label=f"{k} samples")
+    plot(canvas.panel(960, 2 * TITLE + high + 10, 312, high), {key: error(p, full) for key, p in table.items()})
+    canvas.save(path.with_suffix(".png"))
+
+
+def plot(axes, errors):
+    """Error by the number of lines and of samples on each."""
+    for k, colour in zip(sorted({k for _, k in errors}), (plotting.BLUE, plotting.ORANGE, plotting.GREEN, plotting.BLACK)):
+        axes.loglog(LINES, [100 * errors[n, k] for n in LINES], "o-", color=colour, label=f"{k} samples")
     axes.set_xticks(LINES, [str(n) for n in LINES])
     axes.yaxis.set_major_locator(plotting.LogLocator(subs=(1, 2, 5)))
     axes.yaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"{v:g} %"))
@@ -79,7 +84,6 @@ def draw(pictures, path):
     axes.set(xlabel="epipolar lines of samples", ylabel=f"{measure.LABEL} to every pixel")
     axes.legend()
     letter(axes)
-    canvas.save(path.with_suffix(".png"))
 
 
 def figure(mote, quick, output):

@@ -13,9 +13,10 @@ import sys
 
 import numpy as np
 import panels
+import plotting
 from claims import Claims
 from measure import LABEL, series_error
-from panels import BAR, TITLE, Canvas, clean, enlarged, show, show_difference, title
+from panels import BAR, TITLE, Canvas, clean, enlarged, letter, show, show_difference
 from renders import approximate, luminance, main, mean_and_error, write_csv
 
 SCENE, SEEDS = "smoke_room", range(1, 4)
@@ -88,12 +89,12 @@ def bars(axes, table, times):
     """The errors, over pixels and over blocks."""
     for i, block in enumerate(BLOCKS):
         values = [100 * np.array([row[part][1 + i] for row in table.values()]) for part in (0, 1)]
-        axes.bar(np.arange(len(table)) + 0.4 * i - 0.2, values[0], yerr=values[1], width=0.38, color=["tab:blue", "tab:orange"][i],
+        axes.bar(np.arange(len(table)) + 0.4 * i - 0.2, values[0], yerr=values[1], width=0.38, color=[plotting.BLUE, plotting.ORANGE][i],
                  label="pixels" if block == 1 else f"blocks of {block} x {block} pixels")
     axes.set_xticks(range(len(table)), [name.replace(", ", ",\n") for name in table])
-    axes.set_ylabel(f"{LABEL} [%]")
-    axes.legend(fontsize=11)
-    title(axes, f"at {min(times.values()):.1f} to {max(times.values()):.1f} s of one core")
+    axes.set(xlabel=f"method, {min(times.values()):.1f} to {max(times.values()):.1f} s of one core", ylabel=f"{LABEL} [%]")
+    axes.legend()
+    letter(axes)
 
 
 def draw(references, pictures, times, table, clean, path):
@@ -102,7 +103,7 @@ def draw(references, pictures, times, table, clean, path):
     exposure = 0.8 / np.quantile(luminance(clean), 0.985)
     canvas = Canvas(1280, 3 * TITLE + 400 + 2 * 263 + 16 + BAR)
     show(canvas.panel(0, TITLE, 640, 400), clean, exposure, "multiple scattering, by mote_layers, filtered")
-    bars(canvas.panel(700, TITLE, 572, 354), table, times)
+    bars(canvas.panel(720, TITLE, 552, 334), table, times)
     y = 2 * TITLE + 408
     for column, (name, ps) in enumerate(pictures.items()):
         show(canvas.panel(429 * column + 1, y, 421, 263), ps[0].multiple(), exposure, f"{name}, {times[name]:.1f} s")
