@@ -13,7 +13,7 @@ from renders import luminance
 
 DPI = 100
 TITLE = 26  # pixels above a panel that its title takes
-BAR = 38  # pixels below a signed difference that its colour bar takes
+BAR = 44  # pixels below a signed difference that its colour bar takes
 
 
 class Canvas:
@@ -75,8 +75,9 @@ def show_difference(axes, difference, exposure, times, text=None):
     box, figure = axes.get_position(), axes.figure
     pixel = 1 / (DPI * figure.get_figheight())
     bar = figure.add_axes([box.x0, box.y0 - 15 * pixel, box.width, 10 * pixel])
-    wide = box.width * DPI * figure.get_figwidth() > 380
-    plotting.difference(axes, exposure * luminance(difference), 1 / times, "luminance difference / white" if wide else "difference / white", bar)
+    room = box.width * DPI * figure.get_figwidth() / (0.62 * letters(figure) * DPI / 72)  # of letters
+    words = next(w for w in ("luminance difference / white", "difference / white", "difference") if len(w) + 16 < room or w == "difference")
+    plotting.difference(axes, exposure * luminance(difference), 1 / times, words, bar)
     bar.tick_params(labelsize=letters(figure), length=3, pad=2)
     axes.set_aspect("auto")
     if text:

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Plots pictures of the gallery anew whose runs are long: their panels, pixel by pixel as the full run left them (in commit FROM of this
-repository), with words of a size that can be read, and plots from their tables. Nothing is rendered, and no number changes.
+repository), with words of a size that can be read, plots from their tables, and signed differences, of red and green once, in blue and red with a colour bar.
+Nothing is rendered, and no number changes.
 
 Once a figure's script has run again, its own picture takes the place, and its entry goes.
 
@@ -12,6 +13,7 @@ import re
 import subprocess
 import sys
 
+import blender_runs
 import engelhardt_09_01_samples as samples
 import engelhardt_09_11_lines as lines
 import engelhardt_10_07_strategies as strategies
@@ -21,7 +23,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import sun_05_equal_time as equal_time
 from origin import ROOT, csv_text, table_of, tables_of, write_png_text
-from panels import Canvas, letters, title
+from panels import BAR, Canvas, letters, show_difference, title
 
 FROM = "067d946fc0f6"
 GAP = 10  # pixels between panels
@@ -50,7 +52,29 @@ class Sheet:
         return next(row[1] for row in csv.reader(table_of(self.table).splitlines()) if row[0].startswith(claim))
 
 
+class Difference:
+    """A panel of a signed difference: its values as fractions of full colour, read back from its colours of 8 bits."""
+
+    def __init__(self, panel, times):
+        self.times, self.shape = times, panel.shape
+        if np.all(panel[..., 2] <= panel[..., :2].min(axis=2) + 1):  # red less green, as differences were shown once, over a dim grey scene
+            self.values = (panel[..., 0] / 255) ** 2.2 - (panel[..., 1] / 255) ** 2.2
+        else:
+            panel = np.pad(panel[2:-2, 2:-2], [(2, 2), (2, 2), (0, 0)], mode="edge")  # without the frame of its axes
+            known = np.round(plt.get_cmap("RdBu_r")(np.linspace(0, 1, 256))[:, :3] * 255)
+            apart = np.abs(panel.reshape(-1, 1, 3) - known).sum(axis=2)
+            if apart.min(axis=1).max() > 6:
+                raise ValueError("colours that are none of RdBu_r")
+            self.values = (apart.argmin(axis=1) / 127.5 - 1).reshape(panel.shape[:2])
+
+    def show(self, axes, text):
+        show_difference(axes, np.repeat(self.values[..., None], 3, axis=2) / self.times, 1, self.times, text)
+
+
 def put(axes, panel, text):
+    if isinstance(panel, Difference):
+        panel.show(axes, text)
+        return
     axes.imshow(panel, interpolation="nearest", aspect="auto")
     axes.set(xticks=[], yticks=[])
     for spine in axes.spines.values():
@@ -66,7 +90,7 @@ def laid_out(sheet, columns, texts, beside=None, more=(0, 0)):
     width = max(sum(p.shape[1] + GAP for p, _ in line) - GAP for line in lines) + more[0]
     words = round(max(11, 0.91 * width / 100) * 100 / 72 * 1.35)  # of a line of text [pixels]
     above = [max(text.count("\n") * words + words + 6 if text else 0 for _, text in line) for line in lines]
-    heights = [max(p.shape[0] for p, _ in line) for line in lines]
+    heights = [max(p.shape[0] + BAR * isinstance(p, Difference) for p, _ in line) for line in lines]
     canvas, y = Canvas(width, sum(above) + sum(heights) + 4 * (len(lines) - 1) + more[1]), 0
     for line, words_above, high in zip(lines, above, heights):
         x, y = 0, y + words_above
@@ -181,6 +205,63 @@ def tokuyoshi_11_reuse():
           ["one bounce, 55 directions", "four bounces, 55 directions", "four, many passes of 55", "path, for comparison"])
 
 
+def engelhardt_08_01_bounce():
+    sheet = Sheet("engelhardt_08_01_bounce", (26, (10, 532, 1054, 1576, 2098), 512, 512), (574, (10, 340, 670, 1000, 1330), 320, 200))
+    panels, texts, blank = [], [], lambda panel: np.full_like(panel, 255)
+    for k, scene in enumerate(("cornell box", "bunny room")):
+        every, few, truth, *apart = sheet.panels[5 * k:5 * k + 5]
+        panels += [truth, every, few, blank(truth), *(Difference(p, 3) for p in apart)]
+        texts += [f"{scene}: path"] + [f"{n}: {sheet.row(scene=scene, receivers=n)['error']:.1%}" for n in ("every pixel", "1/16 of the pixels")] + \
+                 ["", "difference", "difference"]
+    sheet.panels = panels
+    laid_out(sheet, 3, texts)
+
+
+def engelhardt_08_13_raycast():
+    sheet = Sheet("engelhardt_08_13_raycast", (26, (10, 532, 1054), 512, 320), (382, (532, 1054), 512, 320))
+    sheet.panels = [*sheet.panels[:3], np.full_like(sheet.panels[0], 255), *(Difference(p, 3) for p in sheet.panels[3:])]
+    laid_out(sheet, 3, ["path", *(f"{r['ray_casting']}: relative RMSE {r['error']:.1%}" for r in sheet.rows()), "", "difference", "difference"])
+
+
+def smoke_room(name, texts, differences):
+    """The room in which a frame is enlarged, and differences below."""
+    sheet = Sheet(name, (26, (0,), 640, 400), (26, (648, 861, 1074), 205, 400), (460, (0, 644), 636, 398))
+    sheet.panels[4:] = [Difference(p, times) if times else p for p, times in zip(sheet.panels[4:], differences)]
+    above, below = sheet.panels[:4], sheet.panels[4:]
+    sheet.panels = above
+
+    def second(canvas, y):
+        for k, (panel, text) in enumerate(zip(below, texts[4:])):
+            put(canvas.panel(646 * k, y + 30, 636, 398), panel, text)
+    laid_out(sheet, 4, texts[:4], second, (0, 436 + BAR))
+
+
+def engelhardt_10_05_locally_homogeneous():
+    smoke_room("engelhardt_10_05_locally_homogeneous", ["all light, by mote_layers, filtered; the frame is enlarged", "exact", "mean extinction",
+               "16 times\nthe difference", "difference, means over 4 x 4 pixels", "the picture if the difference were 16 times as large"], (16, None))
+
+
+def engelhardt_10_10_room():
+    smoke_room("engelhardt_10_10_room", ["all light, by mote_layers, filtered; the frame is enlarged", "bounded", "one step", "exact",
+               "bounded less exact, means over 2 x 2 pixels", "one step less exact, means over 2 x 2 pixels"], (3, 3))
+
+
+def hidden_surfaces():
+    sheet = Sheet("hidden_surfaces", *((y, (15, 312, 609, 906, 1203), 282, high) for y, high in ((40, 282), (383, 177), (657, 211))))
+    sheet.panels[4::5] = [Difference(p, 1) for p in sheet.panels[4::5]]
+    texts = []
+    for scene in dict.fromkeys(r["scene"] for r in sheet.rows()):
+        found = [f"{n} layer{'s' * (n > 1)}, {sheet.row(scene=scene, variant=f'{n} layers')['share']:.0%}" for n in (1, 4)]
+        texts += [scene, "exact compensation", *found, "4 layers less exact"]
+    laid_out(sheet, 5, texts)
+
+
+def blender_cycles():
+    sheet = Sheet("blender_cycles", *((y, (10, 436, 862), 416, 234) for y in (28, 296, 564, 832)))
+    sheet.panels[2::3] = [Difference(p, 20) for p in sheet.panels[2::3]]
+    laid_out(sheet, 3, [text for scene in blender_runs.SCENES.values() for text in (f"Cycles: {scene}", "mote", "difference, means of 8 x 8 pixels")])
+
+
 def engelhardt_08_06_multibounce():
     sheet = Sheet("engelhardt_08_06_multibounce", *((y, (10, 452, 894, 1336), 432, 432) for y in (26, 494)))
     laid_out(sheet, 4, ["path", *(r["light"].replace("1 bounces", "1 bounce") for r in sheet.rows())])
@@ -272,7 +353,8 @@ def engelhardt_10_12_anisotropic():
           3 * ["what two steps bring back, x4, 3 x 3 pixels"])
 
 
-FIGURES = [engelhardt_08_06_multibounce, engelhardt_08_10_upsampling, engelhardt_09_01_samples, engelhardt_09_10_against_subsampling,
+FIGURES = [blender_cycles, engelhardt_08_01_bounce, engelhardt_08_13_raycast, engelhardt_10_05_locally_homogeneous, engelhardt_10_10_room,
+           hidden_surfaces, engelhardt_08_06_multibounce, engelhardt_08_10_upsampling, engelhardt_09_01_samples, engelhardt_09_10_against_subsampling,
            engelhardt_09_11_lines, engelhardt_10_07_strategies, engelhardt_10_12_anisotropic, engelhardt_10_13_complex, engelhardt_11_03_hierarchy,
            engelhardt_11_05_ground_truth, hermes_07_interleaved, hermes_08_glossy, hermes_09_path_tracing, hermes_11_direct_apart, smoke_animation,
            sun_05_cornell, sun_05_denoised, sun_05_equal_time, tokuyoshi_04_mis, tokuyoshi_06_environment, tokuyoshi_07_two_bounce,

@@ -5,7 +5,8 @@ Layers of surfaces are the future work of Engelhardt 2013, Sec. 11.5. Three scen
 reaches a quarter of it, the atrium without haze, and rows of thin boards. In each, the light that exact compensation adds
 is compared with what three steps of screen-space compensation add with one to four layers. What is still missing is found
 apart: hidden (more layers), beyond the frame (twice as wide a picture, cut back), the size of pixels (twice as many),
-receivers that are not Lambertian (from their albedos). Shadow rays instead of none show how much comes through walls.
+receivers that are not Lambertian (from their albedos). How much comes through walls was measured by shadow rays, which there are no
+longer, at commit 22333fe075ee (docs/gallery/hidden_surfaces.csv).
 Image errors are relative RMSE (measure.py) of pixels and of blocks of them, what two seeds share: without noise. Times are processor time.
 A full run takes some eight minutes of processor time, --quick without the atrium half a minute.
 """
@@ -178,9 +179,6 @@ def run(mote, quick, output):
     boards = results["boards"]
     claims.check("among the boards four layers bring back nine tenths, one layer less than half",
                  f"{share(boards, 4):.1%} and {share(boards, 1):.1%}", share(boards, 4) > 0.9 and share(boards, 1) < 0.5)
-    claims.check("less than half of what layers bring back comes through walls",
-                 each(lambda r: f"{r['parts']['through walls']:.1%} of {r['parts']['hidden']:.1%}"),
-                 all(r["parts"]["through walls"] < 0.5 * r["parts"]["hidden"] for r in results.values()))
     claims.check("VPLs that hidden points share out cost no accuracy",
                  each(lambda r: f"{r['4 layers']['rms']:.1%} and {r['4, all VPLs']['rms']:.1%}"),
                  all(r["4 layers"]["rms"] < r["4, all VPLs"]["rms"] + 0.03 for r in results.values()))
