@@ -81,7 +81,7 @@ def check(table):
     claims = Claims()
     for other, block, differs in COMPARISONS:
         i = 1 + BLOCKS.index(block)
-        text = ", ".join(f"{name} {100 * table[name][0][i]:.0f} +- {100 * table[name][1][i]:.0f} %" for name in (VPLS, other))
+        text = ", ".join(f"{name} {100 * table[name][0][i]:.1f} +- {100 * table[name][1][i]:.1f} %" for name in (VPLS, other))
         claims.check(f"at equal time {VPLS} are closer to the reference, by a quarter and more, over {block} x {block} pixels",
                      text, table[VPLS][0][i] < 0.75 * table[other][0][i], differs)
     return claims.exit_code()
