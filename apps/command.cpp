@@ -272,6 +272,14 @@ int parse_and_run(int argc, char** argv) {
     add_defines(convert_app, convert.defines, "For a scene: camera=NAME, or emission=FACTOR (repeatable)");
     convert_app.add_option("--exposure", convert.exposure, "Brighten by this many stops")
         ->check(number_between(-100.0, 100.0));
+    convert_app
+        .add_option_function<std::string>(
+            "--tone",
+            [&](const std::string& name) {
+                convert.tone = name == "filmic" ? core::filmic_tone : core::linear_tone;
+            },
+            "Curve of a PNG file or a film: linear (default), or filmic, which keeps the shape of highlights")
+        ->check(CLI::IsMember({"linear", "filmic"}));
     convert_app.add_option("--layer", convert.layer, "This layer of an EXR instead of the beauty");
     add_half(convert_app, convert.half);
     convert_app.callback([&] { action = [&] { return convert_command(convert); }; });

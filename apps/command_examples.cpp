@@ -15,7 +15,7 @@ const std::map<std::string, std::string> examples = {
     {"plan", "  mote plan scene.xml\n  mote plan scene.xml --integrator mote_vpl -D integrator.paths=1024"},
     {"info", "  mote info out/scene.exr\n  mote info smoke.vdb"},
     {"convert",
-     "  mote convert out/scene.exr brighter.png --exposure 1\n"
+     "  mote convert out/scene.exr brighter.png --exposure 1 --tone filmic\n"
      "  mote convert out/scene.exr indirect.png --layer indirect\n"
      "  mote convert frames/####.exr film.mp4 --rate 30"},
     {"trade",

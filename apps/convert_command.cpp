@@ -28,11 +28,15 @@ int convert_command(const ConvertArguments& arguments) {
             "'" + core::printable(arguments.output) +
             "' ends in neither .exr nor .png (nor, for a glTF or pbrt scene, .xml; for frames/####.exr, "
             ".mp4, .webm, .mov or .gif)");
+    if (kind == ".exr" && arguments.tone != core::linear_tone)
+        throw UsageError("--tone is for PNG files and films; an EXR keeps radiance");
     check_outputs(std::vector<NamedFile>{{"the result", arguments.output}},
                   std::vector<NamedFile>{{"the picture that is converted,", arguments.input}});
     const Bitmap bitmap = read_picture(arguments.input, arguments.layer).bitmap;
     if (kind == ".png") {
-        core::write_png(arguments.output, bitmap.width, bitmap.height, bitmap.pixels, arguments.exposure);
+        std::vector<core::Rgb> shown = bitmap.pixels;
+        for (core::Rgb& p : shown) p = core::toned(arguments.tone, p * std::exp2(arguments.exposure));
+        core::write_png(arguments.output, bitmap.width, bitmap.height, shown);
         return exit_ok;
     }
     ImageChannels image;

@@ -40,8 +40,9 @@ int convert_scene(const ConvertArguments& arguments) {
         throw UsageError("a scene is converted from .gltf, .glb or .pbrt to .xml, not from '" +
                          core::printable(arguments.input) + "' to '" + core::printable(arguments.output) +
                          "'");
-    if (arguments.half || arguments.exposure != 0.0f || !arguments.layer.empty())
-        throw UsageError("--half, --exposure and --layer are for pictures, not for scenes");
+    if (arguments.half || arguments.exposure != 0.0f || arguments.tone != core::linear_tone ||
+        !arguments.layer.empty())
+        throw UsageError("--half, --exposure, --tone and --layer are for pictures, not for scenes");
     require_input(arguments.input);
     auto defines = split_defines(arguments.defines);
     core::ConversionOptions options = core::take_conversion_options(arguments.input, defines);

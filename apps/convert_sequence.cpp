@@ -90,7 +90,7 @@ int convert_sequence(const ConvertArguments& a) {
         bytes.reserve(picture.pixels.size() * 3);
         for (const core::Rgb& p : picture.pixels)
             for (int c = 0; c < 3; ++c)
-                bytes.push_back(std::isfinite(scale * p[c]) ? core::encode_srgb(scale * p[c]) : 0);
+                bytes.push_back(std::isfinite(scale * p[c]) ? core::encode_srgb(a.tone(scale * p[c])) : 0);
         encoder->write(bytes);
     }
     try {

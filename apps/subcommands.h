@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/film/tone.h"
 #include "core/formats/xml/scene_loader.h"
 #include "core/objects/registry.h"
 #include "core/render/integrator.h"
@@ -87,7 +88,8 @@ struct MergeArguments {
 struct ConvertArguments {
     std::string input, output, layer;
     float exposure = 0.0f;
-    double rate = 24.0;  ///< of a film: frames a second
+    core::Tone tone = core::linear_tone;  ///< of a PNG file or a film
+    double rate = 24.0;                   ///< of a film: frames a second
     bool half = false;
     bool lenient = false;              ///< of a scene
     std::vector<std::string> defines;  ///< of a scene: "camera=NAME", "emission=FACTOR"

@@ -128,6 +128,7 @@ def main(out):
     for source, page in sources.items():
         text = source.read_text(encoding="utf-8")
         text = outside_fences(text, lambda part: relink(part, source, page, out))
+        text = outside_fences(text, lambda part: re.sub(r"(?<=\d) (?=%)", "\u00a0", part))  # in narrow cells
         if page.name == "index.md":
             text = contents(text, page.parent != out)
         if page == out / "gallery/index.md":

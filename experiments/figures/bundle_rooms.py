@@ -1,12 +1,10 @@
 """The room of the figures of Hermes 2010, errors against a reference, and panels."""
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 import measure
-from renders import luminance, show
+from panels import TITLE, Canvas, show
+from renders import luminance
 
 ROOM = Path(__file__).resolve().parent / "scenes" / "sky_room.xml"
 BUNDLES = {"integrator": "mote_ray_bundles", "integrator.eye_samples": 1}
@@ -35,12 +33,10 @@ def noise(pictures, layer=""):
 def draw(path, panels, columns=2):
     """`panels`: title and picture, all with the exposure of the first."""
     exposure = 0.6 / np.percentile(luminance(panels[0][1]), 90)
-    rows = -(-len(panels) // columns)
-    figure, grid = plt.subplots(rows, columns, figsize=(6.4 * columns, 4.3 * rows), squeeze=False)
-    for axes in grid.flat:
-        axes.axis("off")
-    for axes, (text, picture) in zip(grid.flat, panels):
-        show(axes, picture, exposure, text)
-    figure.tight_layout()
-    figure.savefig(path.with_suffix(".png"), dpi=80)
-    plt.close(figure)
+    height, width = panels[0][1].shape[:2]
+    wide = 1260 // columns
+    high = round(wide * height / width)
+    canvas = Canvas(columns * (wide + 10) - 10, -(-len(panels) // columns) * (TITLE + high + 10))
+    for k, (text, picture) in enumerate(panels):
+        show(canvas.panel(k % columns * (wide + 10), TITLE + k // columns * (TITLE + high + 10), wide, high), picture, exposure, text)
+    canvas.save(path.with_suffix(".png"))

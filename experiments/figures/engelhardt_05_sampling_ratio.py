@@ -16,11 +16,11 @@ import sys
 from pathlib import Path
 
 import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
+import plotting
 from claims import Claims
 from origin import ROOT, Origin
+from panels import TITLE, Canvas, letter, letters, title
 from renders import finish
 
 NAME = Path(__file__).stem
@@ -29,6 +29,7 @@ MAPS = {"cube": "cube", "paraboloid": "two paraboloids", "sphere": "sphere", "la
 # All maps use about as many texels as a square of n * n: their shorter edge, over n.
 EDGES = {"cube": 6 ** -0.5, "paraboloid": (np.pi / 2) ** -0.5, "sphere": (np.pi / 4) ** -0.5,
          "latitude_longitude": 2 ** -0.5}
+MAP_COLOURS = (plotting.BLUE, plotting.ORANGE, plotting.GREEN, plotting.ORANGE_RED, plotting.PURPLE, plotting.BROWN)
 AXES = "through the axes x and z"
 CORNER = 3 ** 1.5  # density at a vertex over density in the middle of a face, for cube and octahedron alike
 
@@ -140,43 +141,40 @@ def great_circles():
 
 
 def draw(program, sizes, texels, pixels, path):
-    figure = plt.figure(figsize=(12.5, 8.6))
-    grid = figure.add_gridspec(3, 12, height_ratios=[1, 1, 1.6], hspace=0.16, wspace=0.35, left=0.05, right=0.93,
-                               top=0.93, bottom=0.06)
+    """A hemisphere and the stored map of each, and three half circles through them."""
+    canvas = Canvas(1280, 880)
     norm = matplotlib.colors.LogNorm(0.25, 4)
     for column, (kind, label) in enumerate(MAPS.items()):
         seen, on = hemisphere(program, kind, sizes[kind], pixels)
         for row, image in enumerate([np.full(on.shape, np.nan), layout(texels[kind])]):
             if row == 0:
                 image[on] = seen["sampling_ratio"]
-            axes = figure.add_subplot(grid[row, 2 * column:2 * column + 2])
+            axes = canvas.panel(8 + 195 * column, TITLE + 24 + 200 * row, 185, 185)
             shown = axes.imshow(image, norm=norm, cmap="RdYlBu_r")
             axes.axis("off")
             if row == 0:
-                axes.set_title(label, fontsize=10)
-    bar = figure.colorbar(shown, cax=figure.add_axes([0.945, 0.5, 0.012, 0.4]), ticks=[0.25, 0.5, 1, 2, 4])
-    bar.ax.set_yticklabels(["1/4", "1/2", "1", "2", "4"])
+                title(axes, label.replace(", ", ",\n"))
+    bar = canvas.figure.colorbar(shown, cax=canvas.panel(1186, TITLE + 44, 14, 346), ticks=[0.25, 0.5, 1, 2, 4])
+    bar.ax.set_yticklabels(["1/4", "1/2", "1", "2", "4"], fontsize=letters(canvas.figure))
+    bar.set_label("density of texels / an even one", fontsize=letters(canvas.figure))
     bar.minorticks_off()
-    figure.suptitle("Density of texels relative to an even one (blue: too few, red: too many)", fontsize=12)
 
     angle, circles = great_circles()
     panels = [("sampling_ratio", name) for name in circles] + [("widest_spacing", AXES)]
     for column, (quantity, circle) in enumerate(panels):
-        axes = figure.add_subplot(grid[2, 4 * column:4 * column + 4])
-        for kind, label in MAPS.items():
-            axes.plot(angle, program.texels(kind, sizes[kind], circles[circle])[quantity], label=label, linewidth=1.2)
+        axes = canvas.panel(62 + 416 * column, 530, 340, 285)
+        for (kind, label), colour in zip(MAPS.items(), MAP_COLOURS):
+            axes.plot(angle, program.texels(kind, sizes[kind], circles[circle])[quantity], label=label, linewidth=1.5, color=colour)
         axes.axhspan(0.5, 2, color="0.92", zorder=0)
-        axes.set(yscale="log", ylim=(0.22, 9), xlim=(0, 180), xlabel="angle from +z, degrees",
-                 xticks=[0, 45, 90, 135, 180], yticks=[0.25, 0.5, 1, 2, 4, 8])
+        axes.set(yscale="log", ylim=(0.22, 9), xlim=(0, 180), xlabel=f"angle from +z, {circle} [°]", xticks=[0, 45, 90, 135, 180],
+                 yticks=[0.25, 0.5, 1, 2, 4, 8], ylabel="density of texels" if quantity == "sampling_ratio" else "spacing of texels, worst")
         axes.set_yticklabels(["1/4", "1/2", "1", "2", "4", "8"])
         axes.minorticks_off()
-        if column:
-            axes.set_yticklabels([])
-        title = "density" if quantity == "sampling_ratio" else "spacing, worse direction"
-        axes.set_title(f"{title}, {circle}", fontsize=9)
-    axes.legend(fontsize=7, loc="upper left")
-    figure.savefig(path, dpi=80)
-    plt.close(figure)
+        letter(axes)
+    handles, labels = axes.get_legend_handles_labels()
+    canvas.figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 1 - 470 / 880), ncols=6, fontsize=letters(canvas.figure),
+                         frameon=False, columnspacing=1.2)
+    canvas.save(path)
 
 
 def write_csv(path, sizes, texels, extremes):

@@ -15,10 +15,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
+import plotting
 from claims import Claims
-from panels import Canvas, title
+from origin import tables_of
 from renders import main
 
 PAPER = {100: (10, 1.6), 200: (50, 1.7), 300: (116, 2.7), 400: (166, 6.3), 500: (249, 7.4)}  # conflicts, pixels
@@ -66,30 +65,28 @@ def check(table, tiles, details):
     return claims.exit_code()
 
 
-def draw(table, cullings, details, path):
-    canvas = Canvas(1280, 420)
-    axes = canvas.panel(60, 40, 330, 320)
-    counts = [int(r["count"]) for r in table]
-    axes.plot([float(r["conflicts"]) for r in table], [float(r["extra"]) for r in table], "o-", label="here, ellipses")
-    axes.plot(*zip(*PAPER.values()), "s--", color="grey", label="Table 6.3")
-    for r in table:
-        axes.annotate(r["count"], (float(r["conflicts"]), float(r["extra"])), textcoords="offset points", xytext=(6, -10), fontsize=8)
-    axes.set(xlabel="items in conflict, four channels", ylabel="pixels counted too many, mean")
-    axes.legend(fontsize=9)
-    title(axes, f"Region sets, {counts[0]} to {counts[-1]} items")
-    axes = canvas.panel(520, 40, 380, 320)
-    axes.barh([c.name.replace("_", " ") for c in cullings][::-1], [c.gain for c in cullings][::-1], color="tab:green")
-    axes.axvline(1, color="black", linewidth=1)
-    axes.set(xlabel="time to the same noise, without lists / with")
-    title(axes, "VPLs culled by what they see")
-    axes = canvas.panel(1000, 40, 250, 320)
-    axes.bar(["finest", "by size", "by visible\npixels"], [1e3 * float(r["seconds"]) for r in details], color="tab:blue")
-    axes.bar(["finest", "by size", "by visible\npixels"], [1e3 * float(r["query_seconds"]) for r in details], color="tab:orange",
-             label="queries")
-    axes.set(ylabel="processor ms")
-    axes.legend(fontsize=9)
-    title(axes, "400 balls: meshes and picture")
-    canvas.save(path)
+def plot_table(table, path):
+    """Region sets against the paper's, the gain by culled VPLs, and the time of meshes as fine as they are visible."""
+    ellipses, _, cullings, details = tables_of(table)
+    made, (sets, culled, balls) = plotting.figure(columns=3, height=400, width_ratios=[1.1, 1.1, 0.8])
+    sets.plot([r["conflicts"] for r in ellipses], [r["extra"] for r in ellipses], "o-", color=plotting.BLUE, label="here, ellipses")
+    sets.plot([r["paper_conflicts"] for r in ellipses], [r["paper_extra"] for r in ellipses], "s--", color=plotting.GREY, label="Table 6.3")
+    for r in ellipses[1:]:
+        sets.annotate(f"{r['count']:.0f}", (r["conflicts"], r["extra"]), textcoords="offset points", xytext=(6, -11))
+    sets.set(xlabel="pairs of items in conflict", ylabel="pixels counted too many, mean", xlim=(None, 280),
+             title=f"Region sets, {ellipses[0]['count']:.0f} to {ellipses[-1]['count']:.0f} items")
+    sets.legend(fontsize=10)
+    culled.barh([r["scene"].replace("_", " ") for r in cullings][::-1], [r["gain"] for r in cullings][::-1], color=plotting.GREEN)
+    culled.axvline(1, color="black", linewidth=1)
+    culled.set(xlabel="time without lists / with, to one noise", ylabel="scene", title="VPLs culled by what they see")
+    names = ["finest", "by size", "by visible\npixels"]
+    balls.bar(names, [1e3 * r["seconds"] for r in details], color=plotting.BLUE)
+    balls.bar(names, [1e3 * r["query_seconds"] for r in details], color=plotting.ORANGE, label="queries")
+    balls.set(xlabel="method", ylabel="processor time [ms]", title="400 balls: meshes")
+    balls.legend(fontsize=10)
+    for axes in (sets, culled, balls):
+        axes.title.set_fontsize(11)
+    plotting.save(made, path)
 
 
 def figure(mote, quick, output):
@@ -110,7 +107,7 @@ def figure(mote, quick, output):
         out.writerows(c.row.values() for c in cullings)
         out.writerow(list(details[0]))
         out.writerows(r.values() for r in details)
-    draw(table, cullings, details, output.with_suffix(".png"))
+    plot_table(output.with_suffix(".csv"), output.with_suffix(".png"))
     return check(table, tiles, details)
 
 

@@ -16,13 +16,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 import measure
 from claims import Claims
 from origin import ROOT, Origin
+from panels import TITLE, Canvas, letters, show
 from renders import finish
 
 NAME = Path(__file__).stem
@@ -69,20 +67,18 @@ def check(layouts, views, build_ms):
 
 
 def draw(views, pixels, path):
-    figure, grid = plt.subplots(2, len(views), figsize=(3 * len(views), 6.4), squeeze=False)
+    """A mirror ball by boxes of the table and by round lobes, four lobes wide."""
+    edge = 300
+    canvas = Canvas(1280, TITLE + 2 * edge + 20)
     for column, r in enumerate(views):
-        for row, prefix in enumerate(["", "cone_"]):
+        for row, (prefix, name) in enumerate((("", "summed areas"), ("cone_", "round lobes"))):
             image = np.ones((pixels, pixels, 3))
-            linear = np.stack([r[prefix + c] for c in "rgb"], axis=1)
-            image[r["row"], r["column"]] = np.clip(linear, 0, 1) ** (1 / 2.2)
-            grid[row, column].imshow(image)
-            grid[row, column].axis("off")
-        grid[0, column].set_title(f"{np.median(r['solid_angle']):.2g} sr", fontsize=10)
-    grid[0, 0].text(-0.05, 0.5, "summed areas", rotation=90, va="center", ha="right", transform=grid[0, 0].transAxes)
-    grid[1, 0].text(-0.05, 0.5, "round lobes", rotation=90, va="center", ha="right", transform=grid[1, 0].transAxes)
-    figure.tight_layout()
-    figure.savefig(path, dpi=80)
-    plt.close(figure)
+            image[r["row"], r["column"]] = np.stack([r[prefix + c] for c in "rgb"], axis=1)
+            axes = canvas.panel(40 + 310 * column, TITLE + row * (edge + 10), edge, edge)
+            show(axes, image, 1, None if row else f"{np.median(r['solid_angle']):.2g} sr")
+            if column == 0:
+                axes.set_ylabel(name, fontsize=letters(canvas.figure))
+    canvas.save(path)
 
 
 def main():
@@ -95,6 +91,7 @@ def main():
     if not program.is_file():
         print(f"no {program}: build it first (tools/build_release.sh mote_surroundings)", file=sys.stderr)
         return 2
+    measure.use(options.bin)
     size, pixels = (128, 48) if options.quick else (512, 120)
     layouts = run(program, "time", "--size", 512, "--repeat", 5 if options.quick else 15)
     reach = [max(size * x / 512, 2.0) for x in (2, 12, 40, 100)]  # less than a texel would be noise

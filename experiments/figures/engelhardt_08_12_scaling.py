@@ -9,15 +9,18 @@ thesis's receivers with and without a space-filling curve. A full run takes some
 """
 import sys
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
+import plotting
 from claims import Claims
 from micro_figures import BUNNY, micro
+from origin import tables_of
 from renders import main, write_csv
 
 BUFFER = 16
+
+
+def exponent(points, values):
+    return float(np.polyfit(np.log(points), np.log(values), 1)[0])
 
 
 def figure(mote, quick, output):
@@ -34,8 +37,7 @@ def figure(mote, quick, output):
     cost = {p: gather(2 ** p) for p in powers}
     each = {p: 1e6 * (seconds - empty) / receivers for p, (seconds, _, receivers) in cost.items()}
     points = np.array([2.0 ** p for p in powers])
-    exponent = lambda values: float(np.polyfit(np.log(points), np.log(values), 1)[0])
-    of_gather, of_light = exponent(list(each.values())), exponent([light for _, light, _ in cost.values()])
+    of_gather, of_light = exponent(points, list(each.values())), exponent(points, [light for _, light, _ in cost.values()])
     claims.check("the cost of a gather is sub-linear in the number of points: an exponent of 0.4 at most", f"{of_gather:.2f} from 2^{powers[0]} to 2^{powers[-1]}", of_gather <= 0.4)
     claims.check("making and lighting the points is linear at most (the thesis: sub-linear)", f"an exponent of {of_light:.2f}", of_light < 1.1)
     # Receivers of before, with lanes `far_apart` pixels apart in both directions: a lattice of a pass's pixels over n^2 passes.
@@ -46,21 +48,27 @@ def figure(mote, quick, output):
                  f"{each[powers[-1]]:.0f} us each, {apart:.0f} us where lanes are {far_apart} pixels apart or anywhere", each[powers[-1]] < apart)
     write_csv(output.with_suffix(".csv"), ["points", "us_each_gather", "light_cpu_seconds", "receivers"],
               [[2 ** p, each[p], cost[p][1], cost[p][2]] for p in powers])
-    draw(points, each, cost, (of_gather, of_light), output)
+    plot_table(output.with_suffix(".csv"), output.with_suffix(".png"))
     return claims.exit_code()
 
 
-def draw(points, each, cost, exponents, output):
-    figure, axes = plt.subplots(1, 2, figsize=(10, 4))
-    for ax, values, title, exponent in ((axes[0], list(each.values()), f"a gather of {BUFFER} x {BUFFER} texels [us]", exponents[0]),
-                                        (axes[1], [c[1] for c in cost.values()], "points and their light [s]", exponents[1])):
-        ax.loglog(points, values, "o-")
-        ax.loglog(points, values[0] * (points / points[0]) ** exponent, "--", label=f"exponent {exponent:.2f}")
-        ax.set(xlabel="points", title=title)
-        ax.legend()
-        ax.grid(True, which="both", alpha=0.3)
-    figure.tight_layout()
-    figure.savefig(output.with_suffix(".png"), dpi=100)
+def plot_table(table, path):
+    """Measured times by the number of points, and the power of it that fits them best."""
+    rows, = tables_of(table)
+    points = np.array([r["points"] for r in rows])
+    made, axes = plotting.figure(columns=2, height=420)
+    for ax, key, title, unit in ((axes[0], "us_each_gather", f"A gather of {BUFFER} x {BUFFER} texels", "processor time [us]"),
+                                 (axes[1], "light_cpu_seconds", "Points and their light", "processor time [s]")):
+        values = np.array([r[key] for r in rows])
+        power = exponent(points, values)
+        ax.plot(points, values, "o-", color=plotting.BLUE, label="measured")
+        ax.plot(points, np.exp(np.log(values).mean() + power * (np.log(points) - np.log(points).mean())), "--", color=plotting.GREY, label=f"points^{power:.2f}")
+        plotting.log_axes(ax, "points", unit, percent=False)
+        ax.xaxis.set_major_locator(plotting.LogLocator())
+        ax.xaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"{v:,.0f}"))
+        ax.set_title(title, loc="left", fontsize=12)
+        ax.legend(fontsize=10)
+    plotting.save(made, path)
 
 
 if __name__ == "__main__":

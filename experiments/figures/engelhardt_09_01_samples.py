@@ -11,13 +11,12 @@ cores, --quick 20 s.
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
+import plotting
 from claims import Claims
 from occluders import sculpture
-from renders import luminance, main, show, write_csv
+from panels import TITLE, Canvas, letter, show
+from renders import luminance, main, write_csv
 
 SCENE = Path(__file__).resolve().parent / "scenes" / "shafts.xml"
 EYE, TARGET, LIGHT, FOV = np.array([0, 1.5, 6]), np.array([0.1, 1.7, 0]), np.array([1.1, 2.5, -2.6]), 60
@@ -59,25 +58,27 @@ def analyse(light, center, length):
 
 
 def draw(paper, ours, full, spectra, length, path):
-    figure, grid = plt.subplots(2, 2, figsize=(12, 7.4))
-    exposure = 0.5 / np.percentile(luminance(full[""]), 90)
-    show(grid[0, 0], paper[""], exposure, "epipolar sampling, the paper's settings")
-    for axes, picture, title in ((grid[0, 1], paper, "marched rays, the paper's settings"),
-                                 (grid[1, 0], ours, "marched rays, refined where light varies")):
+    wide, high = 635, 357
+    canvas = Canvas(1280, 2 * (TITLE + high) + 50)
+    panel = lambda column, row: canvas.panel(645 * column, TITLE + row * (high + TITLE + 10), wide, high)
+    show(panel(0, 0), paper[""], 0.5 / np.percentile(luminance(full[""]), 90), "epipolar sampling, the paper's settings")
+    for axes, picture, text in ((panel(1, 0), paper, "marched rays, the paper's settings"),
+                                (panel(0, 1), ours, "marched rays, refined where light varies")):
         rays = picture["MarchedRays"][..., 0]
         coarse = rays.reshape(rays.shape[0] // 2, 2, rays.shape[1] // 2, 2).max(axis=(1, 3))
-        show(axes, np.repeat(np.minimum(coarse, 1)[..., None], 3, axis=2), 1,
-             f"{title}: {100 * rays.sum() / rays.size:.1f} %")
-    axes = grid[1, 1]
-    for power, name in zip(spectra, ("along epipolar lines", "across")):
-        axes.loglog(length / np.arange(1, len(power) + 1), power, label=name)
+        show(axes, np.repeat(np.minimum(coarse, 1)[..., None], 3, axis=2), 1, f"{text}: {100 * rays.sum() / rays.size:.1f} %")
+    plot(canvas.panel(740, 2 * TITLE + high + 10, 535, high - 15), length / np.arange(1, len(spectra[0]) + 1), spectra)
+    canvas.save(path.with_suffix(".png"))
+
+
+def plot(axes, lengths, spectra):
+    """Power by wave length, along lines and across them."""
+    for power, name, colour in zip(spectra, ("along epipolar lines", "across"), (plotting.BLUE, plotting.ORANGE)):
+        axes.loglog(lengths, power, label=name, color=colour)
     axes.invert_xaxis()
-    axes.set_xlabel("wave length [pixels]")
-    axes.set_ylabel("power of relative variation")
+    axes.set(xlabel="wave length [pixels]", ylabel="relative luminance: mean power")
     axes.legend()
-    figure.tight_layout()
-    figure.savefig(path.with_suffix(".png"), dpi=100)
-    plt.close(figure)
+    letter(axes)
 
 
 def figure(mote, quick, output):

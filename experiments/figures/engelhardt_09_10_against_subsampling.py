@@ -12,14 +12,12 @@ A full run takes about 6 minutes on two cores, --quick 50 s.
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from claims import Claims
 from occluders import crown, sculpture
 from measure import LABEL, series_error
-from renders import luminance, main, show, write_csv
+from panels import TITLE, Canvas, show
+from renders import luminance, main, write_csv
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 LAYER = "single_scattering"
@@ -73,22 +71,22 @@ def render(mote, name, scene, settings, size, sampling):
 
 
 def draw(all_pictures, path):
-    columns = {"full": "every pixel", "lines": "epipolar lines", "grid": "grid, as many rays", "grid x 4": "grid, 4 times"}
-    figure, grid = plt.subplots(len(all_pictures), 4, figsize=(16, 2.55 * len(all_pictures)))
-    for row, (name, pictures) in zip(grid, all_pictures.items()):
+    """A line for each scene: a piece where shafts are fine, magnified, by every way of sampling."""
+    columns = {"full": "every pixel", "lines": "epipolar lines", "grid": "grid, as many", "grid x 4": "grid, 4 times"}
+    wide, high = 313, 175
+    canvas = Canvas(1280, len(all_pictures) * (2 * TITLE + high + 4))
+    for row, (name, pictures) in enumerate(all_pictures.items()):
         full = pictures["full"]
         height, width = full[LAYER].shape[:2]
-        # A piece where shafts are fine, magnified.
         x, y, w = int(0.32 * width), int(0.52 * height), int(0.3 * width)
         piece = (slice(y, y + int(0.56 * w)), slice(x, x + w))
         exposure = 0.6 / max(np.percentile(luminance(full[LAYER])[piece], 95), 1e-9)
-        for axes, (kind, title) in zip(row, columns.items()):
+        for column, (kind, text) in enumerate(columns.items()):
             rays = pictures[kind].value("marched_rays") / full.value("lit_pixels")
-            error = f", relative MSE {relative_mse(pictures[kind], full):.1e}" if kind != "full" else ""
-            show(axes, pictures[kind][LAYER][piece], exposure, f"{name}: {title}, {100 * rays:.1f} %{error}")
-    figure.tight_layout()
-    figure.savefig(path.with_suffix(".png"), dpi=75)
-    plt.close(figure)
+            below = name if kind == "full" else f"{LABEL} {relative_mse(pictures[kind], full) ** 0.5:.1%}"
+            show(canvas.panel(322 * column, row * (2 * TITLE + high + 4) + 2 * TITLE, wide, high), pictures[kind][LAYER][piece], exposure,
+                 f"{text}: {100 * rays:.1f} % of the rays\n{below}")
+    canvas.save(path.with_suffix(".png"))
 
 
 def figure(mote, quick, output):

@@ -10,14 +10,13 @@ documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes a
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 import measure
+import plotting
 from claims import Claims
 from occluders import sculpture
-from renders import luminance, main, show, write_csv
+from panels import TITLE, Canvas, letter, show
+from renders import luminance, main, write_csv
 
 SCENE = Path(__file__).resolve().parent / "scenes" / "shafts.xml"
 LAYER = "single_scattering"
@@ -62,22 +61,29 @@ def draw(pictures, path):
     piece = (slice(y, y + int(0.75 * w)), slice(x, x + w))
     exposure = 0.7 / np.percentile(luminance(full[LAYER])[piece], 95)
     samples = max(k for _, k in table)
-    figure, grid = plt.subplots(2, 3, figsize=(13, 7.2))
-    for axes, lines in zip(grid[0], LINES):
+    wide, high = 420, 315
+    canvas = Canvas(1280, 2 * (TITLE + high) + 60)
+    panel = lambda column, row: canvas.panel(430 * column, TITLE + row * (high + TITLE + 10), wide, high)
+    for column, lines in enumerate(LINES):
         picture = table[lines, samples]
-        show(axes, picture[LAYER][piece], exposure, f"{lines} lines, {picture.value('marched_rays'):.0f} marched rays")
-    show(grid[1, 0], full[LAYER][piece], exposure, f"every pixel, {full.value('marched_rays'):.0f} marched rays")
-    show(grid[1, 1], pictures["few_full"][LAYER][piece], exposure, f"every pixel, {pictures['few']} steps of equal length")
-    for k in sorted({k for _, k in table}):
-        grid[1, 2].loglog(LINES, [error(table[n, k], full) for n in LINES], "o-", label=f"{k} samples")
-    grid[1, 2].set_xticks(LINES, [str(n) for n in LINES])
-    grid[1, 2].minorticks_off()
-    grid[1, 2].set_xlabel("lines")
-    grid[1, 2].set_ylabel(f"{measure.LABEL} against every pixel")
-    grid[1, 2].legend()
-    figure.tight_layout()
-    figure.savefig(path.with_suffix(".png"), dpi=80)
-    plt.close(figure)
+        show(panel(column, 0), picture[LAYER][piece], exposure, f"{lines} lines, {picture.value('marched_rays'):.0f} marched rays")
+    show(panel(0, 1), full[LAYER][piece], exposure, f"every pixel, {full.value('marched_rays'):.0f} marched rays")
+    show(panel(1, 1), pictures["few_full"][LAYER][piece], exposure, f"every pixel, {pictures['few']} steps of equal length")
+    plot(canvas.panel(960, 2 * TITLE + high + 10, 312, high), {key: error(p, full) for key, p in table.items()})
+    canvas.save(path.with_suffix(".png"))
+
+
+def plot(axes, errors):
+    """Error by the number of lines and of samples on each."""
+    for k, colour in zip(sorted({k for _, k in errors}), (plotting.BLUE, plotting.ORANGE, plotting.GREEN, plotting.BLACK)):
+        axes.loglog(LINES, [100 * errors[n, k] for n in LINES], "o-", color=colour, label=f"{k} samples")
+    axes.set_xticks(LINES, [str(n) for n in LINES])
+    axes.yaxis.set_major_locator(plotting.LogLocator(subs=(1, 2, 5)))
+    axes.yaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"{v:g} %"))
+    axes.minorticks_off()
+    axes.set(xlabel="epipolar lines of samples", ylabel=f"{measure.LABEL} to every pixel")
+    axes.legend()
+    letter(axes)
 
 
 def figure(mote, quick, output):

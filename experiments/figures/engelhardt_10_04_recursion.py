@@ -11,8 +11,9 @@ missing. A full run takes 2.5 minutes of one core, --quick half a minute.
 import sys
 
 import numpy as np
+import plotting
 from claims import Claims
-from panels import TITLE, Canvas, clean, show, title
+from panels import TITLE, Canvas, clean, letter, show, title
 from renders import BOUNDED, RECOVERED, approximate, compensation, luminance, main, mean_and_error, write_csv
 
 ROWS = 4  # a line is the mean of so many rows of pixels
@@ -94,28 +95,29 @@ def check(beauty, multiple, few):
 
 def draw(beauty, multiple, few, vpls, clean, path):
     canvas = Canvas(1280, 2 * TITLE + 400 + 368 + 64)
-    left, right, below = 52, 692, 2 * TITLE + 440
-    room = canvas.panel(left, TITLE, 578, 361)
+    left, right, below = 62, 702, 2 * TITLE + 440
+    room = canvas.panel(left, TITLE, 570, 361)
     show(room, clean, 0.8 / np.quantile(luminance(clean), 0.985), "all light, by mote_layers, filtered, and the line")
     height, width = clean.shape[:2]
     high = ROWS * width / beauty["reference"].shape[1]  # of the line, in pixels of the clean picture
     room.axhspan((height - high) / 2, (height + high) / 2, facecolor="none", edgecolor="white", linewidth=1)
-    panels = [canvas.panel(right, TITLE, 578, 361), canvas.panel(left, below, 578, 340), canvas.panel(right, below, 578, 340)]
+    panels = [canvas.panel(right, TITLE, 570, 361), canvas.panel(left, below, 570, 340), canvas.panel(right, below, 570, 340)]
     columns = lambda lines: (np.arange(lines.shape[1]) + 0.5) / lines.shape[1]
     worst = np.argmax(peak(few, "unbounded"))
-    for name, color in (("unbounded", "tab:red"), ("compensated", "black"), ("bounded", "tab:blue")):
+    for name, color in (("unbounded", plotting.ORANGE_RED), ("compensated", "black"), ("bounded", plotting.BLUE)):
         panels[0].plot(columns(few[name]), few[name][worst], color=color, linewidth=1.5, label=name)
     title(panels[0], f"one set of about {vpls:.0f} VPLs: multiple scattering")
     panels[0].set_yscale("log")
     for axes, lines, text in ((panels[1], beauty, "brightness"), (panels[2], multiple, "multiple scattering alone")):
         axes.plot(columns(lines["reference"]), lines["reference"].mean(axis=0), color="black", linewidth=3.5, label="reference")
-        for name, color in (("bounded", "tab:blue"), ("1 step", "tab:orange"), ("2 steps", "tab:green")):
+        for name, color in (("bounded", plotting.BLUE), ("1 step", plotting.ORANGE), ("2 steps", plotting.GREEN)):
             axes.plot(columns(lines[name]), lines[name].mean(axis=0), color=color, linewidth=1.5, label=name)
         title(axes, f"mean of {len(lines['reference'])} sets: {text}")
         axes.set_ylim(bottom=0)
     for axes in panels:
-        axes.legend(fontsize=11)
-        axes.set(xlim=(0, 1), xlabel="along the line", ylabel="luminance [W/(m² sr)]")
+        axes.legend()
+        axes.set(xlim=(0, 1), xlabel="pixel along the line / all of it", ylabel="luminance [W/(m² sr)]")
+        letter(axes)
     canvas.save(path)
 
 

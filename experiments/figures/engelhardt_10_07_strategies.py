@@ -13,8 +13,9 @@ import sys
 
 import numpy as np
 import measure
+import plotting
 from claims import Claims
-from panels import TITLE, Canvas, clean, show, title
+from panels import TITLE, Canvas, clean, letter, show
 from renders import RECOVERED, approximate, compensation, luminance, main, mean_and_error, write_csv
 
 SHARED = {"integrator.eye_samples": 64}
@@ -87,14 +88,17 @@ def draw(clean, pictures, rmse, equal, path):
     for i, (name, ps) in enumerate(pictures.items()):
         place = canvas.panel(430 + 429 * (i % 2), TITLE + (TITLE + 275) * (i // 2), 421, 263)
         show(place, ps[0].multiple(), exposure, f"{name}: {ps[0].passes} passes")
-    axes = canvas.panel(66, 2 * TITLE + 275, 356, 263 - 24)
-    for x, (name, errors) in enumerate(rmse.items()):
-        mean, error = mean_and_error(errors)
-        axes.bar(x, 100 * mean, yerr=100 * error, color=["0.6", "0.6", "tab:blue", "tab:green"][x], width=0.6)
-    axes.set_xticks(range(len(rmse)), [name.replace("1-to-1 ", "") for name in rmse])
-    axes.set_ylabel(f"{measure.LABEL} [%]")
-    title(axes, f"after {equal.seconds} s of processor time")
+    bars(canvas.panel(76, 2 * TITLE + 275, 346, 263 - 42), {name: mean_and_error(errors) for name, errors in rmse.items()}, equal.seconds)
     canvas.save(path)
+
+
+def bars(axes, errors, seconds):
+    """Relative RMSE and its standard error, by strategy."""
+    for x, (mean, error) in enumerate(errors.values()):
+        axes.bar(x, 100 * mean, yerr=100 * error, color=[plotting.GREY, plotting.GREY, plotting.BLUE, plotting.GREEN][x], width=0.6)
+    axes.set_xticks(range(len(errors)), [name.replace("1-to-1 ", "") for name in errors])
+    axes.set(xlabel=f"method, {seconds} s of processor time", ylabel=f"{measure.LABEL} [%]")
+    letter(axes)
 
 
 def figure(mote, quick, output):

@@ -12,8 +12,9 @@ all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full r
 import sys
 
 import numpy as np
+import plotting
 from claims import Claims
-from panels import TITLE, Canvas, clean, enlarged, show, title
+from panels import TITLE, Canvas, clean, enlarged, letter, show
 from renders import ROOT, RECOVERED, approximate, luminance, main, write_csv
 
 TRIANGLES = {"atrium": 262, "city": 823}  # thousands, of the paper's scenes
@@ -84,10 +85,14 @@ def draw(result, cleans, rows, path):
         recovered = pictures["compensated"][RECOVERED] + pictures["compensated"]["compensation_surface"]
         show(canvas.panel(518, y, 510, 319), enlarged(recovered, 4, *picture.shape[:2]), SCALES[scene] * exposure,
              f"what compensation of {row[2]:.0f} VPLs brings back, x{SCALES[scene]}, 4 x 4 pixels")
-        bars = canvas.panel(1078, y, 186, 295)
-        bars.bar(["the rest", "compensation"], row[3:5], color=["0.6", "tab:green"], width=0.6)
-        title(bars, "ns a VPL and a pixel")
+        bars(canvas.panel(1100, y, 176, 280), *row[3:5])
     canvas.save(path)
+
+
+def bars(axes, rest, compensation):
+    axes.bar(["the rest", "comp."], [rest, compensation], color=[plotting.GREY, plotting.GREEN], width=0.6)
+    axes.set(xlabel="method", ylabel="time of a VPL and a pixel [ns]")
+    letter(axes)
 
 
 def figure(mote, quick, output):

@@ -15,10 +15,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import plotting
 from claims import Claims
 from occluders import sculpture
 from origin import table_of
-from panels import TITLE, Canvas, clean, show, title
+from panels import TITLE, Canvas, clean, letter, show
 from renders import luminance, main, write_csv
 
 SCENES = Path(__file__).resolve().parent / "scenes"
@@ -65,23 +66,28 @@ def draw(results, cleans, path):
     canvas = Canvas(1280, 2 * TITLE + 236 + 8 + 420)
     for i, (name, picture) in enumerate(cleans.items()):
         show(canvas.panel(1 + 321 * i, TITLE, 315, 236), picture, 0.6 / np.percentile(luminance(picture), 95), name)
-    left, right = canvas.panel(62, 2 * TITLE + 244, 560, 366), canvas.panel(700, 2 * TITLE + 244, 572, 366)
-    for name, r in results.items():
-        left.semilogy(LEVELS, r["samples"], "o-", linewidth=2, label=name)
-    title(left, "samples a pixel")
-    left.set_xlabel("levels that are summed (1: pixels alone)")
+    plots(canvas.panel(80, TITLE + 254, 540, 376), canvas.panel(710, TITLE + 254, 562, 376), results)
+    canvas.save(path.with_suffix(".png"))
+
+
+def plots(left, right, results):
+    """Samples by the levels that are summed, and where the time goes."""
+    for (name, r), colour in zip(results.items(), (plotting.BLUE, plotting.ORANGE, plotting.GREEN, plotting.ORANGE_RED)):
+        left.semilogy(LEVELS, r["samples"], "o-", linewidth=2, label=name, color=colour)
+    left.set(xlabel="levels that are summed (1: pixels alone)", ylabel="samples a gathered pixel")
     left.grid(alpha=0.3)
-    left.legend(fontsize=11)
+    left.legend()
     names = list(results)
     below = [0.0] * len(names)
-    for key, label in (("direct", "primary rays, direct light"), ("vpls", "1024 VPLs"), ("wide", "two steps, wide bound")):
+    for key, label, colour in (("direct", "primary rays, direct light", plotting.SKY), ("vpls", "1024 VPLs", plotting.colour("mote VPL")),
+                               ("wide", "two steps, wide bound", plotting.colour("VPL, 2 steps"))):
         total = [r["direct"] + r["vpls"] + r["wide"] for r in results.values()]
         share = [100 * r[key] / t for r, t in zip(results.values(), total)]
-        right.bar(names, share, bottom=below, label=label)
+        right.bar(names, share, bottom=below, label=label, color=colour)
         below = [b + s for b, s in zip(below, share)]
-    title(right, "share of the processor time [%]")
-    right.legend(loc="lower right", fontsize=11)
-    canvas.save(path.with_suffix(".png"))
+    right.set(xlabel="scene", ylabel="share of the processor time [%]", ylim=(0, 130), yticks=range(0, 101, 20))
+    right.legend(loc="upper center", ncols=2)
+    letter(left), letter(right)
 
 
 # The thesis does not say how fine its scenes are. These two have surfaces of a few pixels everywhere.

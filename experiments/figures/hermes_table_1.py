@@ -13,12 +13,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+import plotting
 from bundle_times import main, write_table
 from claims import Claims
-from origin import ROOT
+from origin import ROOT, tables_of
 
 PAPER = {("direct", 512, 8): 22, ("direct", 1024, 8): 26, ("direct", 2048, 8): 36, ("direct", 1024, 16): 121,
          ("global", 512, 8): 36, ("global", 1024, 8): 39, ("global", 2048, 8): 51, ("global", 1024, 16): 208}
@@ -43,7 +41,7 @@ def figure(times, quick, output):
             rows += [dict(scene=f"{count} sheets", **r)
                      for r in times.rows(sheets(count, folder), ["rays", "scan"], sides[:1], 2 * directions)]
     write_table(output.with_name(output.name + ".csv"), rows)
-    draw(rows, sides, output.with_name(output.name + ".png"))
+    plot_table(output.with_name(output.name + ".csv"), output.with_name(output.name + ".png"))
     return check(rows, sides)
 
 
@@ -73,21 +71,25 @@ def check(rows, sides):
     return claims.exit_code()
 
 
-def draw(rows, sides, path):
-    plot, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2))
-    for form, label in (("rays", "rays of Embree"), ("scan", "scan of the triangles")):
-        atrium = [r for r in rows if r["scene"] == "atrium" and r["form"] == form]
-        left.plot([r["rays"] for r in atrium], [r["ms_per_direction"] for r in atrium], "o-", label=label)
-        stacks = [r for r in rows if "sheets" in r["scene"] and r["form"] == form]
-        right.plot([int(r["scene"].split()[0]) for r in stacks], [r["ms_per_direction"] for r in stacks], "o-", label=label)
-    left.set(xscale="log", yscale="log", xlabel="rays", ylabel="ms a direction, one core", title="Atrium, 263,000 triangles")
-    right.set(xscale="log", yscale="log", xlabel="sheets", title=f"Sheets, {sides[0]} rays across")
+def plot_table(table, path):
+    """Time by the number of rays in the atrium, and by the number of layers in the sheets."""
+    rows, = tables_of(table)
+    made, (left, right) = plotting.figure(columns=2, height=420)
+    panels = (left, [r for r in rows if r["scene"] == "atrium"], lambda r: r["rays"], "rays", "Atrium, 263,000 triangles")
+    sheets = [r for r in rows if "sheets" in r["scene"]]
+    for axes, chosen, x, name, text in (panels, (right, sheets, lambda r: int(r["scene"].split()[0]), "layers that a ray meets",
+                                                 f"Sheets, {sheets[0]['side']:.0f} rays across")):
+        ends = []
+        for form, label, colour in (("rays", "rays of\nEmbree", plotting.BLUE), ("scan", "scan of the\ntriangles", plotting.ORANGE)):
+            line = [(x(r), r["ms_per_direction"]) for r in chosen if r["form"] == form]
+            axes.plot(*zip(*line), "o-", color=colour)
+            ends.append((label, *line[-1], colour))
+        plotting.log_axes(axes, name, "time of a direction, one core [ms]", percent=False)
+        axes.set_title(text, loc="left", fontsize=12)
+        plotting.label_ends(axes, ends, gap=34)
+    left.xaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"{v / 1e6:g} million"))
     right.set_xticks([4, 8, 16, 32], ["4", "8", "16", "32"])
-    right.minorticks_off()
-    left.legend(), right.legend()
-    plot.tight_layout()
-    plot.savefig(path, dpi=100)
-    plt.close(plot)
+    plotting.save(made, path)
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 
 {"size": [width, height],                                 pixels
  "labels": [{"text", "size", "box"}],                     size: pixels; box: left, top, right, bottom in pixels from the upper left corner
- "differences": [{"box", "bar"}],                         the words at its colour bar, null without any
- "axes": [{"x", "y"}],                                    names of the axes of plots, "" without any
+ "differences": [{"box", "bar"}],                         the words at its colour bar, own or of the same norm; null without any
+ "axes": [{"x", "y"}],                                    names of the axes of plots, own or of shared ones; "" without any
  "pixels": digest}                                        of the PNG file whose labels these are
 
 tests/pages/check_figures.py checks them.
@@ -46,6 +46,18 @@ def signed(image):
     return image.get_gid() == "difference" or image.get_array().ndim == 2 and image.get_cmap().name.removesuffix("_r") in DIVERGING
 
 
+def bar_of(image):
+    """The axes of its colour bar, or of one that panels of the same norm share; None without any."""
+    same = [image, *(i for i in image.figure.findobj(AxesImage) if i.norm is image.norm and i.cmap == image.cmap)]
+    return next((i.colorbar.ax for i in same if i.colorbar), None)
+
+
+def name(axes, side):
+    """The name of an axis; of a shared one, the name that stands at any of the plots."""
+    siblings = getattr(axes, f"get_shared_{side}_axes")().get_siblings(axes)
+    return next((text for text in (getattr(a, f"get_{side}label")() for a in [axes, *siblings]) if text), "")
+
+
 def describe(figure, width, height):
     """The figure after it was plotted with so many pixels."""
     renderer = figure.canvas.get_renderer()
@@ -58,9 +70,9 @@ def describe(figure, width, height):
     plots = [a for a in figure.axes if a not in bars and a.axison and any(t.label1.get_text() for k in (a.xaxis, a.yaxis) for t in ticks(k))]
     return {"size": [width, height],
             "labels": [{"text": t.get_text(), "size": round(t.get_fontsize() * figure.dpi / 72, 2), "box": box(t)} for t in visible(figure)],
-            "differences": [{"box": box(i.axes), "bar": words(i.colorbar.ax) if i.colorbar else None}
+            "differences": [{"box": box(i.axes), "bar": words(bar_of(i)) if bar_of(i) else None}
                             for i in figure.findobj(AxesImage) if signed(i) and i.axes not in bars],
-            "axes": [{"x": a.get_xlabel(), "y": a.get_ylabel()} for a in plots]}
+            "axes": [{side: name(a, side) for side in "xy"} for a in plots]}
 
 
 def write(figure, png):

@@ -4,6 +4,7 @@ A PNG holds it as text chunks, a CSV file as lines that begin with '# ': the scr
 the script and that of the program, what was rendered with which settings, and a digest of the table, which ties the two
 together. tests/gallery compares them with each other and with docs/gallery/index.md.
 """
+import csv
 import hashlib
 import json
 import struct
@@ -63,6 +64,28 @@ def table_of(path):
     """The table of a CSV file without the lines that say where it comes from."""
     with open(path, newline="", encoding="utf-8") as file:
         return "".join(line for line in file if not line.startswith("# "))
+
+
+def tables_of(path):
+    """The tables above the claims, each a list of rows by column, with numbers as floats. A row without any number is a header."""
+    tables = []
+    for row in csv.reader(table_of(path).splitlines()):
+        cells = [as_number(cell) for cell in row]
+        if row[:2] == ["claim", "measured"]:
+            break
+        if not any(isinstance(cell, float) for cell in cells):
+            header = row
+            tables.append([])
+        else:
+            tables[-1].append(dict(zip(header, cells)))
+    return tables
+
+
+def as_number(cell):
+    try:
+        return float(cell)
+    except ValueError:
+        return cell
 
 
 def csv_text(path):

@@ -13,7 +13,7 @@ from renders import luminance
 
 DPI = 100
 TITLE = 26  # pixels above a panel that its title takes
-BAR = 38  # pixels below a signed difference that its colour bar takes
+BAR = 44  # pixels below a signed difference that its colour bar takes
 
 
 class Canvas:
@@ -51,6 +51,14 @@ def title(axes, text, color="black"):
     axes.set_title(text, fontsize=letters(axes.figure), pad=5, color=color)
 
 
+def letter(axes):
+    """Sizes of the words at a plot's axes and in its legend, which are there already."""
+    size = letters(axes.figure)
+    axes.tick_params(labelsize=size)
+    for text in (axes.xaxis.label, axes.yaxis.label, *(axes.get_legend().get_texts() if axes.get_legend() else ())):
+        text.set_fontsize(size)
+
+
 def show(axes, image, exposure, text=None):
     """Fills the axes; pixels stay visible where they are large."""
     axes.imshow(np.clip(image * exposure, 0, 1) ** (1 / 2.2), interpolation="nearest", aspect="auto")
@@ -67,8 +75,9 @@ def show_difference(axes, difference, exposure, times, text=None):
     box, figure = axes.get_position(), axes.figure
     pixel = 1 / (DPI * figure.get_figheight())
     bar = figure.add_axes([box.x0, box.y0 - 15 * pixel, box.width, 10 * pixel])
-    wide = box.width * DPI * figure.get_figwidth() > 380
-    plotting.difference(axes, exposure * luminance(difference), 1 / times, "luminance difference / white" if wide else "difference / white", bar)
+    room = box.width * DPI * figure.get_figwidth() / (0.62 * letters(figure) * DPI / 72)  # of letters
+    words = next(w for w in ("luminance difference / white", "difference / white", "difference") if len(w) + 16 < room or w == "difference")
+    plotting.difference(axes, exposure * luminance(difference), 1 / times, words, bar)
     bar.tick_params(labelsize=letters(figure), length=3, pad=2)
     axes.set_aspect("auto")
     if text:

@@ -39,7 +39,7 @@ def colour(method):
 
 
 def figure(columns=1, height=520, rows=1, **options):
-    """A figure of 960 pixels, and its axes in a list."""
+    """A figure of 960 pixels, and its axes in a list; `options` as for plt.subplots."""
     plt.rcParams.update({"font.size": 10, "svg.fonttype": "none", "svg.hashsalt": "mote"})
     made, axes = plt.subplots(rows, columns, figsize=(WIDTH / DPI, height / DPI), dpi=DPI, layout="constrained", squeeze=False, **options)
     made.get_layout_engine().set(w_pad=0.1, h_pad=0.08)

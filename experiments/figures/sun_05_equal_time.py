@@ -11,8 +11,9 @@ minutes of one core, --quick a minute.
 import sys
 
 import numpy as np
+import plotting
 from claims import Claims
-from panels import TITLE, Canvas, show, title
+from panels import TITLE, Canvas, letter, show
 from renders import luminance, main, write_csv
 from two_ways import BOTH, EYE, OTHERS, errors, render
 
@@ -40,14 +41,18 @@ def draw(results, frames, path):
         for j, (k, text) in enumerate(((BOTH, "from both ends"), (EYE, "from the eye"))):
             picture, passes = pictures[k]
             show(canvas.panel(430 + 429 * j, y, 420, 420), picture[""], exposure, f"{text}, {passes} samples, equal time")
-    axes = canvas.panel(70, 2 * (TITLE + 424) + TITLE, 1190, 240)
-    gains = [r["gain"] for r in results.values()]
-    axes.bar(range(len(gains)), gains, color=["tab:green" if g > 3 else "tab:blue" if g > 1 else "tab:red" for g in gains])
-    axes.axhline(1, color="black", linewidth=0.8)
-    axes.set(yscale="log", ylabel="times faster to equal error")
-    axes.set_xticks(range(len(gains)), list(results))
-    title(axes, "time of paths from the eye over time of bidirectional paths, to the same error")
+    bars(canvas.panel(90, 2 * (TITLE + 424) + 10, 1180, 230), {name: r["gain"] for name, r in results.items()})
     canvas.save(path)
+
+
+def bars(axes, gains):
+    """Time of paths from the eye over that of bidirectional paths, to the same error, by scene."""
+    axes.bar(range(len(gains)), list(gains.values()), color=[plotting.GREEN if g > 1 else plotting.ORANGE_RED for g in gains.values()])
+    axes.axhline(1, color="black", linewidth=0.8)
+    axes.set(yscale="log", ylabel="time from the eye / from\nboth ends, to equal error", xlabel="scene")
+    axes.set_xticks(range(len(gains)), list(gains))
+    axes.yaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"{v:g}"))
+    letter(axes)
 
 
 def figure(mote, quick, output):

@@ -12,12 +12,10 @@ scene, which is not public: atrium (263,000 triangles) and city (825,000). Exit 
 """
 import sys
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+import plotting
 from bundle_times import main, write_table
 from claims import Claims
-from origin import ROOT
+from origin import ROOT, tables_of
 
 SCENES = ("atrium", "city")
 # Rays across the scene's diagonal, and points. 176: about 128 x 128 rays, as in the poster.
@@ -45,7 +43,7 @@ def figure(times, quick, output):
         rows += [measure(times, scene, 64, 4096, splat, directions) for splat in SPLATS if splat != 1.0]
         rows += [measure(times, scene, 64, points, 1.0, directions) for points in POINTS if points != 4096]
     write_table(output.with_name(output.name + ".csv"), rows)
-    draw(rows, sizes, output.with_name(output.name + ".png"))
+    plot_table(output.with_name(output.name + ".csv"), output.with_name(output.name + ".png"))
     return check(rows)
 
 
@@ -81,26 +79,25 @@ def check(rows):
     return claims.exit_code()
 
 
-def draw(rows, sizes, path):
-    plot, (speed, splat, points) = plt.subplots(1, 3, figsize=(13, 4.2))
-    for scene in SCENES:
-        by_size = [select(rows, scene, side=side, points=count, splat=1.0)[0] for side, count in sizes]
-        speed.plot([r["rays"] for r in by_size], [r["ratio"] for r in by_size], "o-", label=scene)
+def plot_table(table, path):
+    """Speed by the number of rays, and links that are missing and wrong, by the size of splats and by the number of points."""
+    rows, = tables_of(table)
+    made, (speed, splat, points) = plotting.figure(columns=3, height=400)
+    for scene, colour in zip(SCENES, (plotting.BLUE, plotting.ORANGE_RED)):
+        by_size = [r for r in select(rows, scene, splat=1.0) if (r["side"], r["points"]) in SIZES]
+        speed.plot([r["rays"] for r in by_size], [r["ratio"] for r in by_size], "o-", color=colour, label=scene)
         for axes, key, chosen in ((splat, "splat", select(rows, scene, side=64, points=4096)),
                                   (points, "points", select(rows, scene, side=64, splat=1.0))):
             chosen = sorted(chosen, key=lambda r: r[key])
-            line, = axes.plot([r[key] for r in chosen], [r["missing"] for r in chosen], "o-", label=f"{scene}, missing")
-            axes.plot([r[key] for r in chosen], [r["wrong"] for r in chosen], "o--", color=line.get_color(),
-                      label=f"{scene}, wrong")
+            for share, style in (("missing", "o-"), ("wrong", "o--")):
+                axes.plot([r[key] for r in chosen], [100 * r[share] for r in chosen], style, color=colour, label=f"{scene}, {share}")
     speed.axhline(4, color="0.7", zorder=0)
-    speed.set(xscale="log", xlabel="rays", title="Exact over imperfect time", ylim=(0, None))
-    splat.set(xlabel="splat size", ylim=(0, 1), title="Share of links, 64 rays across, 4096 points")
-    points.set(xscale="log", xlabel="points", ylim=(0, 1), title="Share of links, splat size 1")
-    for axes in (speed, splat, points):
-        axes.legend(fontsize=8)
-    plot.tight_layout()
-    plot.savefig(path, dpi=100)
-    plt.close(plot)
+    speed.set(xscale="log", xlabel="rays", ylabel="time of exact bundles / of imperfect", ylim=(0, None))
+    splat.set(xlabel="size of splats", ylabel="share of links [%]", ylim=(0, 100), title="4096 points")
+    points.set(xscale="log", xlabel="points", ylabel="share of links [%]", ylim=(0, 100), title="size of splats 1")
+    for axes in (speed, splat):
+        axes.legend(fontsize=10)
+    plotting.save(made, path)
 
 
 if __name__ == "__main__":

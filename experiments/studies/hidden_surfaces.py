@@ -5,7 +5,8 @@ Layers of surfaces are the future work of Engelhardt 2013, Sec. 11.5. Three scen
 reaches a quarter of it, the atrium without haze, and rows of thin boards. In each, the light that exact compensation adds
 is compared with what three steps of screen-space compensation add with one to four layers. What is still missing is found
 apart: hidden (more layers), beyond the frame (twice as wide a picture, cut back), the size of pixels (twice as many),
-receivers that are not Lambertian (from their albedos). Shadow rays instead of none show how much comes through walls.
+receivers that are not Lambertian (from their albedos). How much comes through walls was measured by shadow rays, which there are no
+longer, at commit 22333fe075ee (docs/gallery/hidden_surfaces.csv).
 Image errors are relative RMSE (measure.py) of pixels and of blocks of them, what two seeds share: without noise. Times are processor time.
 A full run takes some eight minutes of processor time, --quick without the atrium half a minute.
 """
@@ -14,15 +15,11 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
-import plotting
 from claims import Claims
 from measure import series_error
-from renders import compensation, luminance, main, mean_and_error, show, write_csv
+from panels import BAR, TITLE, Canvas, show, show_difference
+from renders import compensation, luminance, main, mean_and_error, write_csv
 
 ADDED = "compensation_surface"
 BOARDS = Path(__file__).resolve().parent / "hidden_surfaces.xml"
@@ -138,19 +135,22 @@ def measure(mote, name, quick, rows, plots):
 
 
 def plot(plots, path):
-    figure, axes = plt.subplots(len(plots), 5, figsize=(15, 3.1 * len(plots)), squeeze=False)
-    for line, (name, picture, exact, result) in zip(axes, plots):
+    """Two lines for each scene: the picture, what exact compensation adds, and what layers add; below, how far off they are."""
+    wide = 313
+    heights = [round(wide * exact.shape[0] / exact.shape[1]) for _, _, exact, _ in plots]
+    canvas = Canvas(4 * (wide + 9), sum(2 * (TITLE + high) + BAR + 12 for high in heights))
+    y = TITLE
+    for (name, picture, exact, result), high in zip(plots, heights):
         exposure = 0.9 / np.percentile(luminance(exact), 98)
-        show(line[0], picture[""], 0.6 / np.percentile(luminance(picture[""]), 90), name)
-        show(line[1], exact, exposure, "exact compensation")
-        for axis, n in zip(line[2:4], (1, 4)):
+        panel = lambda column, row: canvas.panel(column * (wide + 10), y + row * (high + TITLE), wide, high)
+        show(panel(0, 0), picture[""], 0.6 / np.percentile(luminance(picture[""]), 90), name)
+        show(panel(1, 0), exact, exposure, "exact compensation")
+        for column, n in ((2, 1), (3, 4)):
             found = sum(result[f"{n} layers"]["images"]) / 2
-            show(axis, found, exposure, f"{n} layer{'s' * (n > 1)}, {result[f'{n} layers']['share']:.0%}")
-        difference = sum(result["4 layers"]["images"]) / 2 - exact
-        plotting.difference(line[4], exposure * luminance(difference), 1, "luminance difference / white")
-        line[4].set_title("with 4 layers", fontsize=9)
-    figure.tight_layout()
-    figure.savefig(path, dpi=100)
+            show(panel(column, 0), found, exposure, f"{n} layer{'s' * (n > 1)}, {result[f'{n} layers']['share']:.0%}")
+            show_difference(panel(column, 1), found - exact, exposure, 1, "difference to exact")
+        y += 2 * (high + TITLE) + BAR + 12
+    canvas.save(path)
 
 
 def run(mote, quick, output):
@@ -179,9 +179,6 @@ def run(mote, quick, output):
     boards = results["boards"]
     claims.check("among the boards four layers bring back nine tenths, one layer less than half",
                  f"{share(boards, 4):.1%} and {share(boards, 1):.1%}", share(boards, 4) > 0.9 and share(boards, 1) < 0.5)
-    claims.check("less than half of what layers bring back comes through walls",
-                 each(lambda r: f"{r['parts']['through walls']:.1%} of {r['parts']['hidden']:.1%}"),
-                 all(r["parts"]["through walls"] < 0.5 * r["parts"]["hidden"] for r in results.values()))
     claims.check("VPLs that hidden points share out cost no accuracy",
                  each(lambda r: f"{r['4 layers']['rms']:.1%} and {r['4, all VPLs']['rms']:.1%}"),
                  all(r["4 layers"]["rms"] < r["4, all VPLs"]["rms"] + 0.03 for r in results.values()))

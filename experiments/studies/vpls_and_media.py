@@ -20,6 +20,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
 from claims import Claims
 from measure import series_error
+from origin import tables_of
+import plotting
 from renders import approximate, compensation, main, mean_and_error, write_csv
 
 SCENE = Path(__file__).with_suffix(".xml")
@@ -79,35 +81,28 @@ def predicted(rows, method):
     return beta ** (steps + 1) / (albedo * (1 - np.exp(-depth / EDGE * CHORD)))
 
 
-def draw(rows, path):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.2))
-    for method, colour in zip(METHODS, ("tab:red", "tab:orange", "tab:blue", "tab:green")):
+def plot_table(table, path):
+    """The light that is lost over the expected, and the noise of one pass by the optical depth of the room."""
+    rows = [list(row.values()) for row in tables_of(table)[0]]
+    made, (left, right) = plotting.figure(columns=2, height=440)
+    for method, colour in zip(METHODS, (plotting.GREEN, plotting.BROWN, plotting.BLACK, plotting.INDIGO)):
         if method != "exact":
             left.errorbar(100 * predicted(rows, method), -100 * column(rows, method, 6), 100 * column(rows, method, 7), fmt="o",
-                          ms=4, lw=0.8, color=colour, label=method)
-        right.plot(column(rows, method, 0), 100 * column(rows, method, 8), "o", ms=4, color=colour, label=method)
+                          ms=5, lw=0.8, color=colour, label=method)
+        right.plot(column(rows, method, 0), 100 * column(rows, method, 8), "o", ms=5, color=colour, label=method)
     left.plot([0, 60], [0, 60], "k-", lw=0.6)
-    left.set_xlabel("expected: beta^(k+1) / beta_all [%]")
-    left.set_ylabel("light lost [%]")
-    right.set_xlabel("optical depth of the room")
-    right.set_ylabel("spread of passes [%]")
-    right.set_xscale("log")
-    right.set_yscale("log")
-    right.legend()
+    left.set(xlabel="light lost, as expected from the bound [%]", ylabel="light lost [%]")
+    right.set(xlabel="optical depth of the room", ylabel="noise of one pass [%]", xscale="log", yscale="log")
     for axes in (left, right):
-        axes.grid(alpha=0.3)
-    left.legend()
-    figure.tight_layout()
-    figure.savefig(path, dpi=110)
+        axes.grid(color="#e4e4e4")
+        axes.legend(fontsize=10)
+    plotting.save(made, path)
 
 
 def run(mote, quick, output):
     rows = study(mote, quick)
     write_csv(output.with_suffix(".csv"), ["optical_depth", "albedo", "g", "paths", "beta", "method", "bias", "error", "spread"], rows)
-    draw(rows, output.with_suffix(".png"))
+    plot_table(output.with_suffix(".csv"), output.with_suffix(".png"))
     claims = Claims()
     z = np.abs(column(rows, "exact", 6)) / column(rows, "exact", 7)
     # Student's t of 7 degrees of freedom: 6 is exceeded by one of 12 in one run of a hundred.

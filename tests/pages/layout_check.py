@@ -57,7 +57,7 @@ def two_titles(canvas):
 CASES = [(shown, ""), (compared, ""), (plot("wall time", "relative RMSE"), ""),
          (text_at(0.99, 0.5), OUT), (text_at(-0.001, 0.5), OUT), (text_at(0.5, 0.999), OUT), (text_at(0.5, -0.02), OUT),
          (text_at(0.5, 0.5, 8), "'out' has 6.2 points"),
-         (plot("", "relative RMSE"), "no horizontal axis"), (plot("wall time", "y"), "no vertical axis"),
+         (plot("", "relative RMSE"), "a horizontal axis"), (plot("wall time", "y"), "a vertical axis"),
          (without_bar, "no colour bar"), (nameless_bar, "no colour bar"), (two_titles, "lies on")]
 
 

@@ -3,6 +3,7 @@
 
 Usage: module_test.py MOTE (the command); PYTHONPATH holds the folder of the package.
 """
+import ast
 import json
 import os
 import resource
@@ -592,6 +593,21 @@ class ModuleTest(unittest.TestCase):
         self.assertTrue(np.allclose(T().translate([1, 2, 3]).inverse().matrix @ [1, 2, 3, 1], [0, 0, 0, 1]))
         self.assertTrue(np.allclose(T().rotate([0, 0, 1], 90).matrix @ [1, 0, 0, 1], [0, 1, 0, 1]))
         self.assertTrue(np.allclose((T().translate([1, 0, 0]) @ T().scale(2)).matrix @ [1, 1, 1, 1], [3, 2, 2, 1]))
+
+    def test_names_at_first_use(self):
+        """`import mote` loads neither NumPy nor the compiled module; dir(), type checkers and the table of modules have the same names."""
+        fresh = lambda words: subprocess.run([sys.executable, "-B", "-c", words], check=True, capture_output=True, text=True).stdout.split()
+        self.assertEqual(fresh("import sys, mote; print([n for n in ('numpy', 'typing', 'mote._mote') if n in sys.modules])"), ["[]"])
+        self.assertEqual(fresh("import mote; print('render' in dir(mote), hasattr(mote, 'rendr'), bool(mote.__version__))"),
+                         ["True", "False", "True"])
+        # The first name in use is one whose own module does not import the errors.
+        self.assertEqual(fresh("import mote\ntry: mote.metric_definitions() and mote.load('no.xml')\nexcept mote.Error: print('Error')"), ["Error"])
+        block = next(node for node in ast.parse(Path(mote.__file__).read_text(encoding="utf-8")).body if isinstance(node, ast.If))
+        declared = {line.module: [name.name for name in line.names] for line in block.body}
+        self.assertEqual(declared.pop("_mote"), ["version"])
+        self.assertEqual(declared, mote._MODULES)
+        self.assertEqual(sorted(sum(declared.values(), [])), sorted(mote.__all__))
+        self.assertLessEqual({*mote.__all__, "__version__"}, set(dir(mote)))
 
     def test_documentation(self):
         """Every public name says what it is, and type checkers find types."""
