@@ -15,7 +15,7 @@ using Picture = std::vector<Rgb>;
 using InDoubles = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 constexpr double upper = 0.975;       ///< probability below the upper end of an interval of 95 %
-constexpr double most_freedom = 1e6;  ///< of variables that are normal, and of noise that pixels do not share
+constexpr double max_freedom = 1e6;  ///< of variables that are normal, and of noise that pixels do not share
 
 double passes_of(std::span<const PassGroup> groups) {
     double passes = 0.0;
@@ -126,11 +126,11 @@ std::vector<double> quantiles(const SharedNoise& noise) {
         noise.squared);
 }
 
-/// Of a variable of mean 0, one of whose variances has few degrees of freedom: Student's t, with as many as
+/// A variable of mean 0, one of whose variances has few degrees of freedom, has Student's t, with as many as
 /// their sum has (Satterthwaite 1946).
 std::vector<double> quantiles(double known, double estimated, double freedom) {
     const double variance = known + estimated, share = variance > 0.0 ? estimated / variance : 0.0;
-    const double of_sum = std::min(freedom / (share * share), most_freedom);
+    const double of_sum = std::min(freedom / (share * share), max_freedom);
     return quantiles(boost::math::students_t_distribution<double, InDoubles>(of_sum), std::sqrt(variance));
 }
 
@@ -165,7 +165,7 @@ SharedNoise shared_noise(std::span<const PassGroup> groups, const RelativeWeight
     const double trace = sum / rest, square = trace_of_square(groups, gram);
     SharedNoise result;
     result.squared = trace / passes_of(groups);
-    result.freedom = square > 0.0 ? std::clamp(trace * trace / square, 1.0, most_freedom) : most_freedom;
+    result.freedom = square > 0.0 ? std::clamp(trace * trace / square, 1.0, max_freedom) : max_freedom;
     result.freedom_of_mean = result.freedom * rest;
     return result;
 }

@@ -60,7 +60,7 @@ struct PictureError {
     double high = std::numeric_limits<double>::infinity();   ///< end of the interval
     /// Upper end for a rule that is evaluated again and again, Eq. (5); nowhere below `high`.
     double rule_high = std::numeric_limits<double>::infinity();
-    /// Of errors by two kinds of weights: the interval holds both.
+    /// One error from those by two kinds of weights: its interval holds both.
     static PictureError of_both(const PictureError& a, const PictureError& b);
 };
 

@@ -145,7 +145,7 @@ class EyePath {
                        const lights::LightSampling& how = {});
     /// False where the last segment is the longest path's last edge.
     bool may_continue() const { return depth_ != limits_.max_depth; }
-    /// Of the vertex where the path is, and of later ones until it is called again.
+    /// Sets those of the vertex where the path is, and of later ones until it is called again.
     void set_factors(const LobeFactors& factors) { factors_ = factors; }
     /// Multiplies its weight.
     void scale(float factor) { weights_.throughput *= factor; }

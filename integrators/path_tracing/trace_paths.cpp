@@ -24,7 +24,7 @@ void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Med
     };
     // min(G*, b)/G* of the edge between the first connectable vertex and this one, where no VPL stands on a
     // delta surface: what continues from there is not part of the bounded transport, but of what it lacks.
-    const auto weigh_edge = [&](int, Lane& lane) {
+    const auto factors_of_edge = [&](int, Lane& lane) {
         if (!lane.alive) return;
         EyePath<Media>& path = *lane.path;
         if (path.scatterings() != 1) {
@@ -36,7 +36,7 @@ void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Med
         path.set_factors(settings.taken ? LobeFactors{1.0f - left, 1.0f} : LobeFactors{left, 0.0f});
     };
     const auto step = [&] {
-        if (weighted) packet.for_each(weigh_edge);
+        if (weighted) packet.for_each(factors_of_edge);
         packet.sample_lights({lit_along});
         if (recorder) packet.for_each([&](int i, Lane& lane) { recorder->on_vertex(i, lane); });
     };

@@ -1,4 +1,4 @@
-// What bounded VPLs leave out, and what they leave, are together all light: by paths, layer by layer.
+// The light that bounded VPLs leave out and the light that they find are together all light: by paths.
 #include "integrators/virtual_point_lights/missing_light.h"
 
 #include "tests/integrators/test_scenes.h"

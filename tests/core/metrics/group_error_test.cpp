@@ -23,7 +23,7 @@ float normal(Rng& rng) {
 
 /// All light of the scene.
 Rgb light(std::size_t p) { return std::exp(3.0f * float(p / width) / float(height)) * Rgb(1.0f, 0.8f, 0.6f); }
-/// What the passes leave out, most at the left edge: a tenth of the light on average.
+/// Share of the light that passes leave out, most at the left edge: a tenth on average.
 float missing_share(std::size_t p) { return 0.5f * std::exp(-float(p % width) / 8.0f); }
 
 /// The noise of a pass, and what its method leaves out.
@@ -124,14 +124,14 @@ struct Coverage {
     double above = 0.0;      ///< share of seeds whose error is above the interval
 };
 
-Coverage coverage(const Method& m, std::uint64_t seeds, bool knows_what_is_missing = true) {
+Coverage coverage(const Method& m, std::uint64_t seeds, bool estimates_missing = true) {
     Coverage result;
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         const Picture picture = picture_of(m, seed);
         const Half a = half_of_missing(m, hash_keys(seed, 1001)),
                    b = half_of_missing(m, hash_keys(seed, 1002));
         std::vector<PictureHalf> missing;
-        if (m.missing > 0.0f && knows_what_is_missing) missing = {a.view(), b.view()};
+        if (m.missing > 0.0f && estimates_missing) missing = {a.view(), b.view()};
         const PictureError said = group_error(picture.groups, missing, exact_weights());
         if (picture.error > said.high) result.above += 1.0 / double(seeds);
         if (picture.error >= said.low && picture.error <= said.high) result.contained += 1.0 / double(seeds);
@@ -166,7 +166,7 @@ TEST_CASE("Splotches of few passes do not hide the error", "[metrics][groups][co
     CHECK(c.contained > 0.95 - within);
 }
 
-TEST_CASE("What a method leaves out is found out where nobody estimates it",
+TEST_CASE("The error is above the interval where the light that is missing is not estimated",
           "[metrics][groups][coverage][planted]") {
     CHECK(coverage({.missing = 1.0f}, 100, false).above > 0.5);
 }
