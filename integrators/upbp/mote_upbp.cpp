@@ -72,7 +72,7 @@ void register_mote_upbp(Registry& registry) {
          row("pb2d", &S::point_beam, "Photons in media along rays of eye paths."),
          row("radius", &S::radius, between(0, 100),
              "Radius of all kernels in the first pass, over the radius of the scene's bounds; 0: nothing is "
-             "merged."),
+             "merged. Smaller with more than 10000 pixels, so that a query finds no more light vertices."),
          row("alpha", &S::alpha, above(0).up_to(1),
              "How fast kernels shrink: their size falls as passes^(alpha - 1); 1: not at all."),
          row("heuristic", &S::heuristic, {{"power", Heuristic::power}, {"balance", Heuristic::balance}},

@@ -16,6 +16,8 @@ using namespace core;
 namespace {
 
 constexpr std::uint32_t light_path_stream = 0x75706270u;
+/// With more light paths than this in a pass kernels are smaller, so that a query costs no more.
+constexpr double paths_of_first_radius = 1e4;
 
 /// Sum over all connections of a pixel's light path with its eye path, and over all merges of its eye path
 /// with the light paths of every pixel, each by its MIS weight (Křivánek et al. 2014).
@@ -61,7 +63,9 @@ class UpbpEstimator final : public Estimator {
         const double size = double(scene_.bounds().radius());
         const double first = settings_.radius * (size > 0.0 ? size : 1.0);
         const auto set = [&](Merge technique, bool used, int dimensions) {
-            const double fraction = gathering::radius_fraction(pass, settings_.alpha, dimensions);
+            const double fraction =
+                gathering::radius_fraction(pass, settings_.alpha, dimensions) *
+                gathering::radius_for_paths(double(pixels()), paths_of_first_radius, dimensions);
             s.merging.radius[std::size_t(technique)] = used ? first * fraction : 0.0;
         };
         set(Merge::surface, settings_.surface, 2);
