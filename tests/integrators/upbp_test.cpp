@@ -14,8 +14,16 @@ using namespace mote::tests;
 namespace {
 
 const std::string merges_alone = R"(<boolean name="bpt" value="false"/>)";
-const std::string beams_alone = merges_alone + R"(<boolean name="pp3d" value="false"/>)";
-const std::string points_alone = merges_alone + R"(<boolean name="pb2d" value="false"/>)";
+std::string without(const std::string& technique) {
+    return R"(<boolean name=")" + technique + R"(" value="false"/>)";
+}
+const std::string beams_alone = merges_alone + without("pp3d") + without("bb1d");
+const std::string points_alone = merges_alone + without("pb2d") + without("bb1d");
+std::string crossings_alone(const std::string& light, const std::string& query) {
+    return merges_alone + without("pp3d") + without("pb2d") +
+           fmt::format(R"(<string name="light_beams" value="{}"/><string name="query_beams" value="{}"/>)",
+                       light, query);
+}
 
 std::string upbp(const std::string& parameters) {
     return R"(<integrator type="mote_upbp">)" + parameters + "</integrator>";
@@ -69,6 +77,30 @@ TEST_CASE("points, beams and paths have the mean of volpath", "[upbp][equality]"
     }
     SECTION("coloured fog, points alone") {
         check_equal(box(grey, fog("0.6, 0.9, 1.2", forward(0.6))), "volpath", points_alone, 1.3, whole_image);
+    }
+    SECTION("coloured fog, crossing beams alone") {
+        const auto check = [](double g, const char* light, const char* query) {
+            INFO(light << " beams of lights, " << query << " query beams, g = " << g);
+            check_equal(box(grey, fog("0.6, 0.9, 1.2", forward(g))), "volpath", crossings_alone(light, query),
+                        1.3, whole_image, in_media);
+        };
+        check(-0.8, "short", "long"), check(0.0, "short", "short");
+        check(0.0, "long", "long"), check(0.8, "long", "short");
+    }
+    SECTION("grey fog, crossing beams alone") {
+        check_equal(box(grey, fog("0.9", forward(0.6))), "volpath", crossings_alone("short", "long"), 1.3,
+                    whole_image, in_media);
+    }
+    SECTION("coloured fog, short query beams") {
+        check_equal(box(grey, fog("0.6, 0.9, 1.2", forward(0.8))), "volpath",
+                    beams_alone + R"(<string name="query_beams" value="short"/>)", 1.3, whole_image,
+                    in_media);
+    }
+    SECTION("smoke, crossing beams alone") {
+        TemporaryFolder folder;
+        const std::string smoke = box(grey, smoke_medium(folder.file("smoke.vol")));
+        check_equal(smoke, "volpath", crossings_alone("short", "long"), 1.3, whole_image, in_media);
+        check_equal(smoke, "volpath", crossings_alone("long", "short"), 1.3, whole_image, in_media);
     }
     SECTION("smoke") {
         TemporaryFolder folder;
