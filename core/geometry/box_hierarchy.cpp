@@ -95,4 +95,13 @@ void BoxHierarchy::visit_boxes(const ShadowPacket& packet, Visitor visitor, cons
     embree::occluded(valid, impl_->scene.get(), query.query, rays);
 }
 
+void BoxHierarchy::visit_boxes(const Ray& ray, Visitor visitor, const void* visit) const {
+    BoxQuery query{{}, visitor, visit};
+    RTCRay r{};
+    r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z, r.tnear = ray.t_min;
+    r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z, r.tfar = ray.t_max;
+    r.mask = 0xffffffffu;
+    embree::occluded(impl_->scene.get(), query.query, r);
+}
+
 }  // namespace mote::core

@@ -1,5 +1,5 @@
-// The boxes that sixteen neighbouring rays pass, out of many: Embree's hierarchy, for code that tests what is
-// in the boxes by rules of their own.
+// The boxes that a ray, or sixteen neighbouring ones, pass, out of many: Embree's hierarchy, for code that
+// tests what is in the boxes by rules of their own.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,7 @@
 
 #include "core/geometry/shadow_packet.h"
 #include "core/math/bounds.h"
+#include "core/math/ray.h"
 
 namespace mote::core {
 
@@ -30,11 +31,20 @@ class BoxHierarchy {
             },
             &visit);
     }
+    /// Likewise of one ray: visit(box).
+    template <typename Visit>
+    void for_each_box(const Ray& ray, const Visit& visit) const {
+        visit_boxes(
+            ray,
+            [](const void* v, std::uint32_t box, std::uint32_t) { (*static_cast<const Visit*>(v))(box); },
+            &visit);
+    }
     std::size_t memory_bytes() const;
 
   private:
     using Visitor = void (*)(const void* visit, std::uint32_t box, std::uint32_t lanes);
     void visit_boxes(const ShadowPacket& packet, Visitor visitor, const void* visit) const;
+    void visit_boxes(const Ray& ray, Visitor visitor, const void* visit) const;
 
     struct Implementation;
     std::unique_ptr<Implementation> impl_;

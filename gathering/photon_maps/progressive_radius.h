@@ -5,6 +5,7 @@
 // Gamma functions.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -17,6 +18,11 @@ inline double radius_fraction(std::uint32_t pass, double alpha, int dimensions =
     const double log_product =
         std::lgamma(i + 1.0 + alpha) - std::lgamma(1.0 + alpha) - (std::lgamma(i + 2.0) - std::lgamma(2.0));
     return std::exp(log_product / double(dimensions));
+}
+
+/// Radius for `paths` light paths over that for up to `few`: so many merges a query, however many there are.
+inline double radius_for_paths(double paths, double few, int dimensions) {
+    return paths > few ? std::pow(few / paths, 1.0 / double(dimensions)) : 1.0;
 }
 
 }  // namespace mote::gathering

@@ -4,17 +4,10 @@
 
 namespace mote::integrators {
 
-namespace {
-
-/// 1 over the density that a beam of this length spares at a point of its edge; tau is never below e^-40
-/// (edge_transmittance()).
-double spared(BeamLength length, double tau) { return length == BeamLength::long_beam ? 1.0 / tau : 1.0; }
-
-}  // namespace
-
 double merge_kernel(Merge technique, const MergeVertex& v, const MergeSettings& settings) {
     constexpr double pi = std::numbers::pi;
-    const double r = settings.radius[std::size_t(technique)], n = settings.light_subpaths;
+    const double r = settings.radius[std::size_t(technique)];
+    const double n = settings.light_subpaths[std::size_t(technique)];
     if (!v.connectable || v.on_surface != (technique == Merge::surface) || !(r > 0.0)) return 0.0;
     if (!v.on_surface && !(v.sigma_t > 0.0)) return 0.0;
     switch (technique) {
@@ -23,10 +16,10 @@ double merge_kernel(Merge technique, const MergeVertex& v, const MergeSettings& 
         case Merge::point_point_3d:
             return n * (4.0 / 3.0) * pi * r * r * r * v.sigma_t;
         case Merge::point_beam_2d:
-            return n * pi * r * r * spared(settings.eye_beams, v.tau_eye);
+            return n * pi * r * r * spared_density(settings.eye_beams, v.tau_eye);
         case Merge::beam_beam_1d:
-            return n * 2.0 * r * v.sine / v.sigma_t * spared(settings.light_beams, v.tau_light) *
-                   spared(settings.eye_beams, v.tau_eye);
+            return n * 2.0 * r * v.sine / v.sigma_t * spared_density(settings.light_beams, v.tau_light) *
+                   spared_density(settings.eye_beams, v.tau_eye);
     }
     return 0.0;
 }

@@ -19,9 +19,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
+#include "core/math/vec.h"
 #include "integrators/bidirectional/heuristic.h"
 
 namespace mote::integrators {
@@ -37,7 +39,8 @@ enum class BeamLength : std::uint8_t {
 
 struct MergeSettings {
     std::array<double, merge_count> radius{};  ///< [m]; 0: the technique is not used
-    double light_subpaths = 1.0;               ///< n of a pass; each may merge with every eye subpath
+    /// n of a pass; each may merge with every eye subpath.
+    std::array<double, merge_count> light_subpaths{1.0, 1.0, 1.0, 1.0};
     BeamLength light_beams = BeamLength::short_beam, eye_beams = BeamLength::long_beam;
 
     bool uses(Merge technique) const { return radius[std::size_t(technique)] > 0.0; }
@@ -55,6 +58,17 @@ struct MergeVertex {
     double tau_eye = 1.0;     ///< of the edge from the camera
     double sine = 1.0;        ///< of the angle between these edges
 };
+
+/// 1 over the density that a beam of this length spares at a point of its edge, with tau up to there, never
+/// below e^-40 (edge_transmittance()).
+inline double spared_density(BeamLength length, double tau) {
+    return length == BeamLength::long_beam ? 1.0 / tau : 1.0;
+}
+/// Sine of the angle between two unit directions.
+inline double sine_between(const core::Vec3& a, const core::Vec3& b) {
+    const core::Vec3d c = glm::cross(core::Vec3d(a), core::Vec3d(b));
+    return std::min(1.0, std::sqrt(glm::dot(c, c)));
+}
 
 /// K of a technique at the vertex [m^2]; 0 where it cannot merge there.
 double merge_kernel(Merge technique, const MergeVertex& vertex, const MergeSettings& settings);

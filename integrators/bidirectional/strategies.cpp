@@ -8,6 +8,13 @@ namespace mote::integrators {
 
 using namespace core;
 
+double light_connection(const LightEnds& ends, const PathVertex& first, const LightPoint& start,
+                        const PathVertex& light, Heuristic heuristic) {
+    if (!first.scattering.connectable() || !(light.density > 0.0)) return 0.0;
+    const double sampled = ends.sampled(first.scattering.light_receiver(), start, first.distance_squared);
+    return mis_term(heuristic, sampled / light.density);
+}
+
 template <bool Media>
 bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& walk) {
     float u_light = sampler.next_1d();
@@ -40,11 +47,7 @@ bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& w
 template <bool Media>
 void Strategies<Media>::finish_light_start() {
     PathVertex& first = light_.vertices[1];
-    first.connection = 0.0;
-    if (!first.scattering.connectable() || !(light_.vertices[0].density > 0.0)) return;
-    const double sampled =
-        ends_.sampled(first.scattering.light_receiver(), light_start_, first.distance_squared);
-    first.connection = mis_term(settings_.heuristic, sampled / light_.vertices[0].density);
+    first.connection = light_connection(ends_, first, light_start_, light_.vertices[0], settings_.heuristic);
 }
 
 template <bool Media>
@@ -104,7 +107,7 @@ std::optional<std::pair<Contribution, Vec2>> Strategies<Media>::join_to_lens(std
     const double own =
         settings_.heuristic == Heuristic::none ? 1.0 : mis_term(settings_.heuristic, light_paths_);
     const auto weight_with = [&](double edge) {
-        return weight(light_.others(s - 1, by_camera * edge, before, edge) / own, 0.0);
+        return weight(light_.others(s - 1, by_camera * edge, before, edge, lens->wi) / own, 0.0);
     };
     const float chance = worth_a_ray(weight_with(1.0));
     if (!(chance > 0.0f)) return std::nullopt;
@@ -147,8 +150,7 @@ Contribution Strategies<Media>::hit_light(std::size_t t) {
         const double by_light =
             start.of(v.geometric_cosine(direction), z.distance_squared, z.infinite) * z.edge;
         others = mis_term(settings_.heuristic, sampled / z.density) +
-                 mis_term(settings_.heuristic, start.light / z.density) *
-                     eye_.through(t - 2, by_light, z.others, z.edge);
+                 mis_term(settings_.heuristic, start.light / z.density) * eye_.through(t - 2, by_light, z);
     }
     const float w = weight(0.0, others);
     return {z.weight * radiance * w, layer_of(0, t), 0, int(t), w};
@@ -181,7 +183,7 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     const auto weight_with = [&](double edge) {
         return weight(mis_term(settings_.heuristic, to_light * edge / sampled),
                       mis_term(settings_.heuristic, start.light / sampled) *
-                          eye_.others(t - 1, by_light * edge, before));
+                          eye_.others(t - 1, by_light * edge, before, edge, light->wi));
     };
     const float chance = worth_a_ray(weight_with(1.0));
     if (!(chance > 0.0f)) return {};
@@ -222,8 +224,8 @@ bool Strategies<Media>::prepare(std::size_t s, std::size_t t, Connection& c) con
 template <bool Media>
 float Strategies<Media>::weight_of(const Connection& c, std::size_t t, double edge) const {
     if (settings_.heuristic == Heuristic::none) return 1.0f;
-    return weight(light_.others(c.s - 1, c.to_light * edge, c.before_light, edge),
-                  eye_.others(t - 1, c.to_eye * edge, c.before_eye));
+    return weight(light_.others(c.s - 1, c.to_light * edge, c.before_light, edge, c.wi),
+                  eye_.others(t - 1, c.to_eye * edge, c.before_eye, edge, c.wi));
 }
 
 template <bool Media>

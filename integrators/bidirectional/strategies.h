@@ -28,6 +28,10 @@ struct Contribution {
     float weight = 0.0f;  ///< of multiple importance sampling, in `light`
 };
 
+/// PathVertex::connection of the first vertex behind the light, `start`, which is vertex 0.
+double light_connection(const LightEnds& ends, const PathVertex& first, const LightPoint& start,
+                        const PathVertex& light, Heuristic heuristic);
+
 template <bool Media>
 class Strategies {
   public:
@@ -49,7 +53,12 @@ class Strategies {
 
     /// Traces a light path, and joins its vertices to the lens (t = 1): splat(Contribution, film position).
     template <typename Splat>
-    void trace_light_path(core::Sampler& sampler, const Splat& splat);
+    void trace_light_path(core::Sampler& sampler, const Splat& splat) {
+        trace_light_path(sampler, splat, [](SubpathWalk<Media>&) {});
+    }
+    /// Also calls after_step(walk) after each edge, a vertex at its end or not.
+    template <typename Splat, typename AfterStep>
+    void trace_light_path(core::Sampler& sampler, const Splat& splat, const AfterStep& after_step);
     /// Traces an eye path, and adds what it finds with all vertices of the last light path:
     /// found(Contribution).
     template <typename Found>
@@ -141,8 +150,9 @@ class Strategies {
 };
 
 template <bool Media>
-template <typename Splat>
-void Strategies<Media>::trace_light_path(core::Sampler& sampler, const Splat& splat) {
+template <typename Splat, typename AfterStep>
+void Strategies<Media>::trace_light_path(core::Sampler& sampler, const Splat& splat,
+                                         const AfterStep& after_step) {
     light_.vertices.clear();
     const int max_depth = settings_.limits.max_depth;
     SubpathWalk<Media> walk(
@@ -150,8 +160,11 @@ void Strategies<Media>::trace_light_path(core::Sampler& sampler, const Splat& sp
         {max_depth < 0 ? -1 : std::max(0, max_depth - 1), std::min(2, settings_.limits.rr_depth)}, light_,
         sampler, context_);
     if (!start_light_path(sampler, walk)) return;
-    while (walk.advance()) {
-        if (light_.size() == 2) finish_light_start();
+    while (true) {
+        const bool continues = walk.advance();
+        if (continues && light_.size() == 2) finish_light_start();
+        after_step(walk);
+        if (!continues) return;
         if (settings_.limits.hide_emitters || !settings_.connections)
             continue;  // eye rays pass lights, connections to the lens do not
         const core::Vec2 u_lens = pinhole_ ? core::Vec2(0.5f) : sampler.next_2d();

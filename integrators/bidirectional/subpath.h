@@ -47,8 +47,9 @@ struct PathVertex {
     core::Rgb sigma_s{0.0f};    ///< [1/m], in media where subpaths are merged
     double sigma_t = 0.0;       ///< mean over channels [1/m], likewise
     double point_merges = 0.0;  ///< sum of h(K) of the merges of two points
-    double beam_merges = 0.0;   ///< h(K tau) of the merge with a long query beam, tau of the edge to the eye
-    int scatterings = 0;        ///< of an eye path before this vertex, without leading mirrors and glass
+    /// h(K) of the merges of a point with a beam and of two beams, with a sine and tau of 1.
+    double point_beam_merges = 0.0, beam_beam_merges = 0.0;
+    int scatterings = 0;  ///< of an eye path before this vertex, without leading mirrors and glass
     bool surface_first = true;
 
     /// C(x) / d^2 of a vertex seen along a unit direction from the square root of `d2` away; 1 at infinity.
@@ -80,32 +81,42 @@ struct Subpath {
         if ((k >= 2 && vertices[k - 1].delta) || (!last && vertex.delta)) return 0.0;
         return vertex.connection;
     }
-    /// Sum of h(K) of the merges at a vertex; `next_edge`: tau of the edge after it.
-    double merges(const PathVertex& vertex, double next_edge) const {
+    /// Sum of h(K) of the merges at a vertex; of the edge after it tau and direction, either way.
+    double merges(const PathVertex& vertex, double next_edge, const core::Vec3& next_direction) const {
+        double beams = vertex.point_beam_merges;
+        if (vertex.beam_beam_merges > 0.0) {
+            const double tau = from_light ? vertex.edge : next_edge;
+            beams += vertex.beam_beam_merges *
+                     mis_term(heuristic, sine_between(vertex.scattering.wo, next_direction) *
+                                             spared_density(merging.light_beams, tau));
+        }
+        if (!(beams > 0.0)) return vertex.point_merges;
         const double to_eye = from_light ? next_edge : vertex.edge;
-        if (!(vertex.beam_merges > 0.0)) return vertex.point_merges;
-        return vertex.point_merges + vertex.beam_merges / mis_term(heuristic, to_eye);
+        return vertex.point_merges + beams * mis_term(heuristic, spared_density(merging.eye_beams, to_eye));
     }
     /// Sum over all techniques with fewer vertices from this end, in terms of the one that connects vertex k.
-    /// `reverse`, `reverse_before`: densities of vertices k and k - 1 sampled from the other end;
-    /// `next_edge`: tau of the connection, which `reverse` holds.
-    double others(std::size_t k, double reverse, double reverse_before, double next_edge = 1.0) const {
+    /// `reverse`, `reverse_before`: densities of vertices k and k - 1 sampled from the other end; of the
+    /// connection tau, which `reverse` holds, and the direction, either way.
+    double others(std::size_t k, double reverse, double reverse_before, double tau,
+                  const core::Vec3& direction) const {
         const PathVertex& v = vertices[k];
-        const double before = k == 0 ? 0.0 : through(k - 1, reverse_before, v.others, v.edge);
-        return techniques_before(heuristic, {v.density, reverse, technique(k, true), merges(v, next_edge)},
-                                 before);
+        const double before = k == 0 ? 0.0 : through(k - 1, reverse_before, v);
+        return techniques_before(heuristic,
+                                 {v.density, reverse, technique(k, true), merges(v, tau, direction)}, before);
     }
     /// Terms of it that do not depend on how the path continues, once vertex k is made.
     double others_before(std::size_t k, double reverse_of_second_before) const {
         if (k < 2) return 0.0;
-        return through(k - 2, reverse_of_second_before, vertices[k - 1].others, vertices[k - 1].edge);
+        return through(k - 2, reverse_of_second_before, vertices[k - 1]);
     }
-    /// Eq. (1) of merged_weights.h at vertex k, where the path continued; `before`: the sum up to vertex k
-    /// - 1.
-    double through(std::size_t k, double reverse, double before, double next_edge) const {
+    /// Eq. (1) of merged_weights.h at vertex k, where the path continued to `next`, which has the sum up to
+    /// vertex k - 1.
+    double through(std::size_t k, double reverse, const PathVertex& next) const {
         const PathVertex& v = vertices[k];
         return techniques_before(
-            heuristic, {v.density, reverse, technique(k), v.delta ? 0.0 : merges(v, next_edge)}, before);
+            heuristic,
+            {v.density, reverse, technique(k), v.delta ? 0.0 : merges(v, next.edge, next.scattering.wo)},
+            next.others);
     }
 };
 

@@ -45,14 +45,35 @@ bool SubpathWalk<Media>::scatter() {
 }
 
 template <bool Media>
+bool SubpathWalk<Media>::keeps_beams() const {
+    const bool eye = mode_ == TransportMode::radiance;
+    return Media &&
+           (path_.merging.uses(Merge::beam_beam_1d) || (eye && path_.merging.uses(Merge::point_beam_2d)));
+}
+
+template <bool Media>
+void SubpathWalk<Media>::begin_beam() {
+    Beam& beam = beams_.emplace_back();
+    beam.ray = ray_, beam.state = state_, beam.weights = weights_;
+    beam.index = path_.size(), beam.density = density_, beam.parallel = parallel_;
+    beam.scatterings = scatterings_, beam.surface_first = surface_first_;
+    if (beam.index >= 2)
+        beam.others =
+            path_.others_before(beam.index, density_of_previous(path_, beam.index - 1, ray_.direction, mode_,
+                                                                path_.vertices[beam.index - 1].delta));
+}
+
+template <bool Media>
 WalkEvent SubpathWalk<Media>::go() {
     Rgb emitted(0.0f);
-    const bool keeps = Media && mode_ == TransportMode::radiance && path_.merging.uses(Merge::point_beam_2d);
-    if (keeps) segments_.push_back({ray_, state_, channel_throughput(), {}});
+    const bool keeps = keeps_beams();
+    if (keeps) begin_beam();
     const WalkEvent event = walk<Media>(scene_, ray_, state_, weights_, emitted, context_);
     if (keeps) {
-        segments_.back().ray.t_max = event.surface_distance;
-        segments_.back().boundaries = context_.boundary_hits;
+        Beam& beam = beams_.back();
+        beam.ray.t_max = event.surface_distance;
+        beam.reached = std::min(event.distance, event.surface_distance);
+        beam.boundaries = context_.boundary_hits;
     }
     emitted_ += emitted;
     return event;
@@ -61,8 +82,8 @@ WalkEvent SubpathWalk<Media>::go() {
 template <bool Media>
 bool SubpathWalk<Media>::advance() {
     emitted_ = Rgb(0.0f);
-    segments_.clear();
-    const std::size_t k = edge_ = path_.size();
+    beams_.clear();
+    const std::size_t k = path_.size();
     if (limits_.max_vertices >= 0 && int(k) > limits_.max_vertices) return false;
     if (k > 1 && !scatter()) return false;
     const MediumState start = state_;
@@ -111,50 +132,14 @@ void SubpathWalk<Media>::append(const WalkEvent& event, const MediumState& start
         vertex.edge = edge_transmittance(scene_, edge, from_infinity ? state_ : start, context_.tracking);
     }
     vertex.density = density_ * vertex.area_measure(ray_.direction, vertex.distance_squared) * vertex.edge;
-    if (path_.merging.any() && !vertex.infinite) set_merges(vertex, event);
+    if (path_.merging.any() && !vertex.infinite)
+        set_merges(
+            path_,
+            event.medium ? event.medium->coefficients(vertex.scattering.position) : MediumCoefficients{},
+            vertex);
     if (k >= 2)
         vertex.others =
             path_.others_before(k, density_of_previous(path_, k - 1, ray_.direction, mode_, previous.delta));
-}
-
-template <bool Media>
-void SubpathWalk<Media>::set_merges(PathVertex& vertex, const WalkEvent& event) const {
-    if (event.medium) {
-        const MediumCoefficients at = event.medium->coefficients(vertex.scattering.position);
-        vertex.sigma_t = double(average(at.sigma_t)), vertex.sigma_s = at.sigma_s;
-    }
-    const MergeVertex v{vertex.scattering.on_surface(), vertex.scattering.connectable(), vertex.sigma_t};
-    const auto term = [&](Merge technique) {
-        return mis_term(path_.heuristic, merge_kernel(technique, v, path_.merging));
-    };
-    vertex.point_merges = term(Merge::surface) + term(Merge::point_point_3d);
-    vertex.beam_merges = term(Merge::point_beam_2d);
-}
-
-template <bool Media>
-PathVertex SubpathWalk<Media>::vertex_beside(const SubpathSegment& segment, float t, const PathVertex& photon,
-                                             double connection) const {
-    const std::size_t k = edge_;
-    const PathVertex& previous = path_.vertices[k - 1];
-    PathVertex vertex;
-    vertex.scattering = photon.scattering, vertex.scattering.wo = -segment.ray.direction;
-    vertex.scatterings = scatterings_, vertex.surface_first = surface_first_, vertex.connection = connection;
-    vertex.sigma_t = photon.sigma_t, vertex.sigma_s = photon.sigma_s;
-    vertex.point_merges = photon.point_merges, vertex.beam_merges = photon.beam_merges;
-    vertex.weight = segment.throughput;
-    if (!parallel_) {
-        const Vec3d d = Vec3d(segment.ray.at(t)) - Vec3d(previous.scattering.position);
-        vertex.distance_squared = std::max(glm::dot(d, d), 1e-40);
-    }
-    Ray edge = segment.ray;
-    edge.t_max = t;
-    vertex.edge = edge_transmittance(scene_, edge, segment.state, context_.tracking);
-    vertex.density =
-        density_ * vertex.area_measure(segment.ray.direction, vertex.distance_squared) * vertex.edge;
-    if (k >= 2)
-        vertex.others = path_.others_before(
-            k, density_of_previous(path_, k - 1, segment.ray.direction, mode_, previous.delta));
-    return vertex;
 }
 
 template class SubpathWalk<true>;

@@ -5,7 +5,7 @@
 
 #include "core/math/sampler.h"
 #include "core/scene/russian_roulette.h"
-#include "integrators/bidirectional/subpath.h"
+#include "integrators/bidirectional/beam.h"
 #include "integrators/eye_path/transport_layers.h"
 
 namespace mote::integrators {
@@ -14,14 +14,6 @@ struct SubpathLimits {
     int max_vertices = -1;       ///< after the first; -1: no limit
     int rr_depth = 5;            ///< Russian roulette after this many of them
     bool passes_lights = false;  ///< the first edge continues behind area lights, and sees no environment
-};
-
-/// A ray of the last edge up to its first surface, whether or not the path got there: a long query beam.
-struct SubpathSegment {
-    core::Ray ray;                             ///< t_max: the first surface
-    core::MediumState state;                   ///< media at its origin
-    core::Rgb throughput{0.0f};                ///< of the path there
-    std::vector<core::SurfaceHit> boundaries;  ///< of media along it
 };
 
 template <bool Media>
@@ -49,20 +41,18 @@ class SubpathWalk {
     const core::Rgb& emitted() const { return emitted_; }
     Transport emission_layer() const { return transport_layer(scatterings_, surface_first_); }
 
-    /// Rays of the last edge, also where no vertex was made; kept where beams are merged. More than one where
-    /// the first edge passes lights.
-    std::span<const SubpathSegment> segments() const { return segments_; }
-    /// The vertex that the path would have had at `photon`, a vertex of a light subpath beside the segment.
-    /// `connection`: PathVertex::connection.
-    PathVertex vertex_beside(const SubpathSegment& segment, float t, const PathVertex& photon,
-                             double connection) const;
+    /// The last edge as beams, also where no vertex was made; kept where this end's beams are merged. More
+    /// than one where the first edge passes lights.
+    std::span<Beam> beams() { return beams_; }
+    std::span<const Beam> beams() const { return beams_; }
 
   private:
     bool scatter();
     bool survives(std::size_t vertex);
     core::WalkEvent go();
     void append(const core::WalkEvent& event, const core::MediumState& start);
-    void set_merges(PathVertex& vertex, const core::WalkEvent& event) const;
+    bool keeps_beams() const;
+    void begin_beam();
     core::Rgb channel_throughput() const {
         return Media ? weights_.throughput / core::average(weights_.unidirectional) : weights_.throughput;
     }
@@ -77,8 +67,7 @@ class SubpathWalk {
     core::PathWeights weights_;
     core::MediumState state_;
     core::Rgb emitted_{0.0f}, first_{0.0f};
-    std::vector<SubpathSegment> segments_;
-    std::size_t edge_ = 0;  ///< index of the vertex at the end of the last edge
+    std::vector<Beam> beams_;
     double density_ = 0.0;
     float eta_ = 1.0f;
     bool parallel_ = false;

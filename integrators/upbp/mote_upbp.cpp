@@ -40,9 +40,21 @@ Plan MoteUpbp::plan(const Scene& scene, const Requirements& r) const {
     if (settings_.surface) plan.run("surface photons", "kernel of two dimensions", "at eye vertices");
     if (settings_.point_point && r.media_scattering)
         plan.run("point-point 3D", "kernel of three dimensions", "at collisions of the eye path");
+    const auto beams = [&](BeamLength wanted) {
+        if (possible_length(scene, wanted) == BeamLength::short_beam)
+            return "short: as long as the sampled distance";
+        return wanted == BeamLength::long_beam
+                   ? "long: up to the first surface, with a transmittance that may be an estimate"
+                   : "long: short beams need media that scatter, and are grey or homogeneous";
+    };
     if (settings_.point_beam && r.media_scattering)
-        plan.run("point-beam 2D", "kernel of two dimensions",
-                 "long query beams: up to the first surface, with a transmittance that may be an estimate");
+        plan.run("point-beam 2D", "kernel of two dimensions", "photons beside query beams");
+    if (settings_.beam_beam && r.media_scattering) {
+        plan.run("beam-beam 1D", "kernel of one dimension", "beams of light paths that query beams cross");
+        plan.run("beams of light paths", beams(settings_.light_beams), "light_beams");
+    }
+    if ((settings_.point_beam || settings_.beam_beam) && r.media_scattering)
+        plan.run("query beams", beams(settings_.query_beams), "query_beams");
     plan.run("weights",
              settings_.heuristic == Heuristic::power ? "power heuristic, exponent 2" : "balance heuristic",
              "of all techniques that find the same path; in media by the optical depth of its edges");
@@ -60,6 +72,7 @@ Plan MoteUpbp::plan(const Scene& scene, const Requirements& r) const {
 
 void register_mote_upbp(Registry& registry) {
     using S = UpbpSettings;
+    const Choices<BeamLength> lengths{{"short", BeamLength::short_beam}, {"long", BeamLength::long_beam}};
     add_type<S>(
         registry, Category::integrator, "mote_upbp",
         "Points, beams and paths in one estimator: bidirectional paths merged with photons on surfaces and "
@@ -70,9 +83,16 @@ void register_mote_upbp(Registry& registry) {
          row("surf", &S::surface, "Photons on surfaces."),
          row("pp3d", &S::point_point, "Photons in media around collisions of eye paths."),
          row("pb2d", &S::point_beam, "Photons in media along rays of eye paths."),
+         row("bb1d", &S::beam_beam,
+             "Rays of light paths in media that rays of eye paths cross; of 2000 light paths a pass, if "
+             "there "
+             "are more, and by a radius that shrinks with more than 100."),
+         row("light_beams", &S::light_beams, lengths,
+             "Rays of light paths up to the sampled distance, or up to the first surface."),
+         row("query_beams", &S::query_beams, lengths, "Likewise, rays of eye paths."),
          row("radius", &S::radius, between(0, 100),
              "Radius of all kernels in the first pass, over the radius of the scene's bounds; 0: nothing is "
-             "merged."),
+             "merged. Smaller with more than 10000 pixels, so that a query finds no more."),
          row("alpha", &S::alpha, above(0).up_to(1),
              "How fast kernels shrink: their size falls as passes^(alpha - 1); 1: not at all."),
          row("heuristic", &S::heuristic, {{"power", Heuristic::power}, {"balance", Heuristic::balance}},

@@ -16,6 +16,12 @@ using namespace core;
 namespace {
 
 constexpr std::uint32_t light_path_stream = 0x75706270u;
+/// With more light paths than this in a pass kernels are smaller, so that a query costs no more.
+constexpr double paths_of_first_radius = 1e4;
+/// Beams cross far more often than points lie beside them, and most of their boxes are empty: so many light
+/// paths have beams, however many there are, and so many the first radius.
+constexpr std::size_t paths_with_beams = 2000;
+constexpr double paths_of_first_beam_radius = 100.0;
 
 /// Sum over all connections of a pixel's light path with its eye path, and over all merges of its eye path
 /// with the light paths of every pixel, each by its MIS weight (Křivánek et al. 2014).
@@ -35,23 +41,43 @@ class UpbpEstimator final : public Estimator {
         image.finish_late();  // any light path may reach any pixel
         const BidirectionalSettings settings = settings_of(context.index);
         std::vector<std::vector<Splat>> splats(std::size_t(options_.height));
-        std::vector<Subpath> paths(std::size_t(options_.width));  // of the first row, until all have room
-        if (!trace_light_paths(context, settings, paths, splats)) return false;
+        Lights lights;
+        lights.paths.resize(std::size_t(options_.width));  // of the first row, until all have room
+        lights.beams_of_row.resize(std::size_t(options_.height));
+        if (!trace_light_paths(context, settings, lights, splats)) return false;
         add_splats(splats, context.filter, image);
-        const LightVertices lights(paths, settings.merging);
-        on_surfaces_ += lights.on_surfaces(), in_media_ += lights.in_media();
+        lights.vertices = LightVertices(lights.paths, settings.merging);
+        if (settings.merging.uses(Merge::beam_beam_1d))
+            lights.beams = LightBeams(lights.paths, lights.beams_of_row, settings.merging.light_beams,
+                                      settings.merging.radius[std::size_t(Merge::beam_beam_1d)],
+                                      double(scene_.bounds().radius()));
+        on_surfaces_ += lights.vertices.on_surfaces(), in_media_ += lights.vertices.in_media();
+        beams_ += lights.beams.size();
         return loop_.run(context, image, {}, [&](EyeTask<Media>& task) {
-            trace_eye_paths(context, settings, paths, lights, image, task);
+            trace_eye_paths(context, settings, lights, image, task);
         });
     }
     void add_statistics(Statistics& statistics) const override {
         loop_.add_statistics(statistics);
         statistics.values["light_vertices_on_surfaces"] += double(on_surfaces_);
         statistics.values["light_vertices_in_media"] += double(in_media_);
+        statistics.values["light_beams"] += double(beams_);
         statistics.values["kernel_radius_surface"] = radius_;
     }
 
   private:
+    std::size_t beam_paths() const { return std::min(pixels(), paths_with_beams); }
+    /// Evenly spread, and as many as there are beam_paths().
+    bool has_beams(std::size_t path) const {
+        return (path + 1) * beam_paths() / pixels() > path * beam_paths() / pixels();
+    }
+    /// The light subpaths of a pass.
+    struct Lights {
+        std::vector<Subpath> paths;
+        std::vector<std::vector<LightBeam>> beams_of_row;
+        LightVertices vertices;
+        LightBeams beams;
+    };
     std::size_t pixels() const { return std::size_t(options_.width) * std::size_t(options_.height); }
 
     BidirectionalSettings settings_of(std::uint32_t pass) {
@@ -61,42 +87,49 @@ class UpbpEstimator final : public Estimator {
         const double size = double(scene_.bounds().radius());
         const double first = settings_.radius * (size > 0.0 ? size : 1.0);
         const auto set = [&](Merge technique, bool used, int dimensions) {
-            const double fraction = gathering::radius_fraction(pass, settings_.alpha, dimensions);
+            const auto n = double(dimensions == 1 ? beam_paths() : pixels());
+            const double few = dimensions == 1 ? paths_of_first_beam_radius : paths_of_first_radius;
+            const double fraction = gathering::radius_fraction(pass, settings_.alpha, dimensions) *
+                                    gathering::radius_for_paths(n, few, dimensions);
             s.merging.radius[std::size_t(technique)] = used ? first * fraction : 0.0;
+            s.merging.light_subpaths[std::size_t(technique)] = n;
         };
         set(Merge::surface, settings_.surface, 2);
         set(Merge::point_point_3d, Media && settings_.point_point, 3);
         set(Merge::point_beam_2d, Media && settings_.point_beam, 2);
-        s.merging.light_subpaths = double(pixels());
+        set(Merge::beam_beam_1d, Media && settings_.beam_beam, 1);
+        s.merging.light_beams = possible_length(scene_, settings_.light_beams);
+        s.merging.eye_beams = possible_length(scene_, settings_.query_beams);
         radius_ = s.merging.radius[std::size_t(Merge::surface)];
         return s;
     }
 
-    bool trace_light_paths(const PassContext& context, const BidirectionalSettings& settings,
-                           std::vector<Subpath>& paths, std::vector<std::vector<Splat>>& splats) {
+    bool trace_light_paths(const PassContext& context, const BidirectionalSettings& settings, Lights& lights,
+                           std::vector<std::vector<Splat>>& splats) {
         const auto rows = [&](int begin, int end) {
             tbb::parallel_for(begin, end, [&](int y) {
-                if (!context.cancelled) trace_row(context, settings, y, paths, splats[std::size_t(y)]);
+                if (!context.cancelled) trace_row(context, settings, y, lights, splats[std::size_t(y)]);
             });
         };
         rows(0, 1);
-        require_memory(paths);
-        paths.resize(pixels());
+        require_memory(lights);
+        lights.paths.resize(pixels());
         rows(1, options_.height);
         return !context.cancelled;
     }
-    /// By the vertices of the first row.
-    void require_memory(const std::vector<Subpath>& paths) const {
-        double vertices = 0.0;
-        for (int x = 0; x < options_.width; ++x) vertices += double(paths[std::size_t(x)].size());
-        const double each =
-            double(sizeof(Subpath)) + vertices / options_.width * LightVertices::bytes_per_vertex;
+    /// By the vertices and beams of the first row.
+    void require_memory(const Lights& lights) const {
+        double first_row = 0.0;
+        for (int x = 0; x < options_.width; ++x)
+            first_row += double(lights.paths[std::size_t(x)].size()) * LightVertices::bytes_per_vertex;
+        for (const LightBeam& b : lights.beams_of_row[0]) first_row += LightBeams::bytes_of(b);
+        const double each = double(sizeof(Subpath)) + first_row / options_.width;
         options_.memory.require(
             each * double(pixels()), fmt::format("the vertices of {} light subpaths", pixels()),
             [each](double bytes) { return fmt::format("{:.0f} subpaths fit", std::floor(bytes / each)); });
     }
-    void trace_row(const PassContext& context, const BidirectionalSettings& settings, int y,
-                   std::vector<Subpath>& paths, std::vector<Splat>& splats) {
+    void trace_row(const PassContext& context, const BidirectionalSettings& settings, int y, Lights& lights,
+                   std::vector<Splat>& splats) {
         WalkContext walk;
         walk.cancelled = context.cancelled;
         Strategies<Media> strategies(scene_, ends_, settings, std::uint32_t(pixels()),
@@ -105,23 +138,29 @@ class UpbpEstimator final : public Estimator {
             const auto path = std::uint32_t(pixel_key(options_, x, y));
             Sampler sampler(options_.sampler, options_.seed, path, context.index, light_path_stream);
             walk.rng = Rng(hash_keys(options_.seed, context.index, path, light_path_stream));
-            strategies.trace_light_path(sampler, [&](const Contribution& c, const Vec2& film) {
+            const auto splat = [&](const Contribution& c, const Vec2& film) {
                 splats.push_back({film, c.light, std::uint32_t(c.layer)});
-            });
-            paths[index_of(x, y)] = strategies.light_path();
+            };
+            const auto after_step = [&](SubpathWalk<Media>& edge) {
+                if (!has_beams(index_of(x, y))) return;
+                for (Beam& beam : edge.beams())
+                    lights.beams_of_row[std::size_t(y)].push_back(
+                        {std::uint32_t(index_of(x, y)), strategies.light_start(), std::move(beam)});
+            };
+            strategies.trace_light_path(sampler, splat, after_step);
+            lights.paths[index_of(x, y)] = strategies.light_path();
         }
         loop_.counters().add(walk.rays, walk.tracking);
     }
     void trace_eye_paths(const PassContext& context, const BidirectionalSettings& settings,
-                         const std::vector<Subpath>& paths, const LightVertices& lights, PassImage& image,
-                         EyeTask<Media>& task) {
+                         const Lights& lights, PassImage& image, EyeTask<Media>& task) {
         WalkContext& walk = task.walk();
         Strategies<Media> strategies(scene_, ends_, settings, std::uint32_t(pixels()),
                                      context.filter.radius(), walk);
-        Merges<Media> merges(strategies, lights, settings, walk);
+        Merges<Media> merges(scene_, ends_, strategies, lights.vertices, lights.beams, settings, walk);
         task.for_each_pixel([&](int x, int y) {
             if (context.cancelled) return;
-            strategies.take_light_path(paths[index_of(x, y)]);
+            strategies.take_light_path(lights.paths[index_of(x, y)]);
             const EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
             walk.rng = eye.rng;
             const auto found = [&](const Contribution& c) { image.at(c.layer, x, y) += c.light; };
@@ -139,11 +178,15 @@ class UpbpEstimator final : public Estimator {
     UpbpSettings settings_;
     LightEnds ends_;
     ImageLoop<Media> loop_;
-    std::uint64_t on_surfaces_ = 0, in_media_ = 0;
+    std::uint64_t on_surfaces_ = 0, in_media_ = 0, beams_ = 0;
     double radius_ = 0.0;
 };
 
 }  // namespace
+
+BeamLength possible_length(const Scene& scene, BeamLength wanted) {
+    return short_beams_possible(scene) ? wanted : BeamLength::long_beam;
+}
 
 std::unique_ptr<Estimator> make_upbp_estimator(const Scene& scene, const RenderOptions& options,
                                                const UpbpSettings& settings) {

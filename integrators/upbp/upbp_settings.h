@@ -9,11 +9,15 @@ namespace mote::integrators {
 struct UpbpSettings {
     EyePathLimits limits;
     Heuristic heuristic = Heuristic::balance;
-    bool connections = true, surface = true, point_point = true, point_beam = true;
+    bool connections = true, surface = true, point_point = true, point_beam = true, beam_beam = true;
+    BeamLength light_beams = BeamLength::short_beam, query_beams = BeamLength::long_beam;
     double radius = 0.01;      ///< of the first pass, over the radius of the scene's bounds
     double alpha = 2.0 / 3.0;  ///< how fast kernels shrink
     bool all_connections = false;
 };
+
+/// Long where short beams are not possible in the scene (beam.h).
+BeamLength possible_length(const core::Scene& scene, BeamLength wanted);
 
 /// Passes of `mote_upbp`: a light subpath and an eye subpath for each pixel.
 std::unique_ptr<core::Estimator> make_upbp_estimator(const core::Scene& scene,

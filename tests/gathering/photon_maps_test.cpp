@@ -202,3 +202,11 @@ TEST_CASE("Kernels shrink by the product that the passes would give one after th
         }
     }
 }
+
+TEST_CASE("Kernels of many light paths hold as many as those of few", "[photons]") {
+    for (const int d : {1, 2, 3}) {
+        CHECK(radius_for_paths(10.0, 1e4, d) == 1.0);
+        for (const double n : {2e4, 1e6, 1e8})
+            CHECK(n * std::pow(radius_for_paths(n, 1e4, d), d) == Approx(1e4).epsilon(1e-9));
+    }
+}

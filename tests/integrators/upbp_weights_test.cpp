@@ -72,7 +72,7 @@ class BruteForce {
         const MergeVertex& v = path_.vertices[std::size_t(k)];
         double r = settings_.radius[std::size_t(technique)];
         if (v.on_surface != (technique == Merge::surface) || !v.connectable || r == 0.0) return 0.0;
-        double p = planted_ == Planted::subpaths ? 1.0 : settings_.light_subpaths;
+        double p = planted_ == Planted::subpaths ? 1.0 : settings_.light_subpaths[std::size_t(technique)];
         for (int i = 0; i < path_.size(); ++i) {
             if (i < k) p *= light(i);
             if (i > k) p *= eye(i);
@@ -182,7 +182,7 @@ MergeSettings settings_of(int which, Rng& rng) {
     MergeSettings settings;
     for (std::size_t m = 0; m < merge_count; ++m)
         settings.radius[m] = which >> m & 1 ? between(rng, 0.05, 0.5) : 0.0;
-    settings.light_subpaths = 50.0;
+    settings.light_subpaths = {50.0, 40.0, 30.0, 20.0};
     settings.light_beams = which & 16 ? BeamLength::long_beam : BeamLength::short_beam;
     settings.eye_beams = which & 32 ? BeamLength::long_beam : BeamLength::short_beam;
     return settings;
@@ -219,7 +219,7 @@ TEST_CASE("weights over connections and merges are those of brute force and add 
 
 TEST_CASE("merges stay finite at extremes", "[upbp][mis][extremes]") {
     MergeSettings settings;
-    settings.light_subpaths = 1e8, settings.radius = {0.1, 0.1, 0.1, 0.1};
+    settings.light_subpaths = {1e8, 1e8, 1e8, 1e8}, settings.radius = {0.1, 0.1, 0.1, 0.1};
     settings.light_beams = settings.eye_beams = BeamLength::long_beam;
     MergeVertex v;
     v.sigma_t = 1.0;
@@ -238,7 +238,7 @@ TEST_CASE("merges stay finite at extremes", "[upbp][mis][extremes]") {
         MergeSettings none = settings;
         none.radius = {};
         CHECK(merge_terms(v, none, Heuristic::balance) == 0.0);
-        none = settings, none.light_subpaths = 0.0;
+        none = settings, none.light_subpaths = {};
         CHECK(merge_terms(v, none, Heuristic::balance) == 0.0);
         v.sigma_t = 0.0;
         CHECK(merge_terms(v, settings, Heuristic::balance) == 0.0);
