@@ -14,7 +14,7 @@ using Picture = std::vector<Rgb>;
 /// Digits enough, in a third of the time.
 using InDoubles = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
-constexpr double upper = 0.975;       ///< probability below the upper end of an interval of 95 %
+constexpr double upper = 0.975;      ///< probability below the upper end of an interval of 95 %
 constexpr double max_freedom = 1e6;  ///< of variables that are normal, and of noise that pixels do not share
 
 double passes_of(std::span<const PassGroup> groups) {
