@@ -31,6 +31,7 @@ METHODS = {  # name: (integrator, its settings, passes of a render)
     "path": ("path", {}, 64),
     "volpath": ("volpath", {}, 64),
     "bdpt": ("mote_bdpt", {}, 16),
+    "upbp": ("mote_upbp", {}, 8),
     "vpl": ("mote_vpl", {"paths": 64}, 16),
     "vpl exact": ("mote_vpl", {"paths": 64, "compensation": "exact"}, 8),
     "vpl resampling": ("mote_vpl", {"paths": 256, "selection": "resampling"}, 16),

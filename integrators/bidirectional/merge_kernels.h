@@ -64,7 +64,7 @@ struct MergeVertex {
 inline double spared_density(BeamLength length, double tau) {
     return length == BeamLength::long_beam ? 1.0 / tau : 1.0;
 }
-/// Of the angle between two unit directions.
+/// Sine of the angle between two unit directions.
 inline double sine_between(const core::Vec3& a, const core::Vec3& b) {
     const core::Vec3d c = glm::cross(core::Vec3d(a), core::Vec3d(b));
     return std::min(1.0, std::sqrt(glm::dot(c, c)));

@@ -113,8 +113,8 @@ TEST_CASE("fog before and behind a hidden lamp dims alike", "[hide_emitters]") {
     // Eye rays begin at the near clip plane, 0.01 m from the camera: 0.04 m to the lamp and 0.05 m behind it;
     // a path that skips either is brighter by 8 or 10 %, which check_mean() finds.
     const double expected = light_of_floor(2.0);
-    for (const char* type : {"volpath", "mote_bdpt", "mote_vpl", "mote_ray_lights", "mote_photon_map",
-                             "mote_single_scattering", "mote_epipolar"}) {
+    for (const char* type : {"volpath", "mote_bdpt", "mote_upbp", "mote_vpl", "mote_ray_lights",
+                             "mote_photon_map", "mote_single_scattering", "mote_epipolar"}) {
         INFO(type);
         const auto picture = render(*scene, type, true);
         CHECK(mean_of(picture, "emission") == 0.0);
@@ -172,8 +172,8 @@ TEST_CASE("the sky is hidden from the camera, not from mirrors", "[hide_emitters
         "value='none'/></bsdf></shape>" +
             sky + "</scene>",
         4);
-    for (const char* type :
-         {"path", "volpath", "mote_bdpt", "mote_vpl", "mote_photon_map", "mote_single_scattering"}) {
+    for (const char* type : {"path", "volpath", "mote_bdpt", "mote_upbp", "mote_vpl", "mote_photon_map",
+                             "mote_single_scattering"}) {
         INFO(type);
         CHECK(mean_of(render(*alone, type, true, 16), "emission") == 0.0);
         CHECK(mean_of(render(*alone, type, false, 16), "emission") == Approx(2.0));

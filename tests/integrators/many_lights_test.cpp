@@ -104,9 +104,9 @@ TEST_CASE("plans say that lights are chosen by a hierarchy, and why", "[many_lig
             ->plan(*scene, mote::core::find_requirements(*scene))
             .to_text();
     };
-    for (const char* type :
-         {"path", "volpath", "mote_bdpt", "mote_vpl", "mote_vsl", "mote_vpl_ray_bundles", "mote_ray_lights",
-          "mote_photon_map", "mote_micro_rendering", "mote_single_scattering", "mote_epipolar"}) {
+    for (const char* type : {"path", "volpath", "mote_bdpt", "mote_upbp", "mote_vpl", "mote_vsl",
+                             "mote_vpl_ray_bundles", "mote_ray_lights", "mote_photon_map",
+                             "mote_micro_rendering", "mote_single_scattering", "mote_epipolar"}) {
         INFO(type);
         const std::string sky = R"(<emitter type="constant"/>)";
         CHECK(plan_of(fmt::format("{}", fmt::join(all, "")), type).find("hierarchy of 8 lights") !=

@@ -42,13 +42,13 @@ double phase_pdf(const Vec3& from, const Vec3& at, const Vec3& to) {
     return (1.0 - double(g) * double(g)) / (4.0 * std::numbers::pi * d * std::sqrt(d));
 }
 
-/// Joint densities, with nothing left out.
+/// Joint densities of all techniques, with nothing left out.
 class BruteForce {
   public:
     BruteForce(const Points& points, const MergeSettings& settings, bool with_sine)
         : points_(points), settings_(settings), with_sine_(with_sine) {}
 
-    /// Of x_i, sampled from x_{i-1}, by area or volume.
+    /// Density of x_i, sampled from x_{i-1}, by area or volume.
     double from_light(int i) const {
         if (i == 0) return 1.0;
         return direction(i, i - 1, i - 2) / points_.square(i, i - 1) * points_.tau(i) * sigma(i);

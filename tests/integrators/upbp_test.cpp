@@ -96,6 +96,16 @@ TEST_CASE("points, beams and paths have the mean of volpath", "[upbp][equality]"
                     beams_alone + R"(<string name="query_beams" value="short"/>)", 1.3, whole_image,
                     in_media);
     }
+    SECTION("a tinted pane in coloured fog") {
+        std::string xml = box(grey, fog("0.6, 0.9, 1.2", forward(0.3)));
+        xml.insert(xml.find("<sensor"), R"(<shape type="rectangle"><transform name="to_world">
+            <scale x="0.7" y="0.5"/><rotate x="1" angle="-80"/><translate y="0.1"/></transform>
+            <bsdf type="thindielectric"><rgb name="specular_transmittance" value="0.9, 0.6, 0.3"/>
+            <rgb name="specular_reflectance" value="0"/></bsdf></shape>)");
+        check_equal(xml, "volpath", "", 1.1, 8, in_media);
+        check_equal(xml, "volpath", crossings_alone("short", "long"), 1.3, whole_image, in_media);
+        check_equal(xml, "volpath", crossings_alone("long", "short"), 1.3, whole_image, in_media);
+    }
     SECTION("smoke, crossing beams alone") {
         TemporaryFolder folder;
         const std::string smoke = box(grey, smoke_medium(folder.file("smoke.vol")));
@@ -145,4 +155,27 @@ TEST_CASE("kernels without a size, or larger than the scene, leave finite light"
         check_equal(box(grey, fog("0.6, 0.9, 1.2", "")), "volpath", R"(<float name="radius" value="0"/>)",
                     1.1);
     }
+}
+
+TEST_CASE("one light path or none, and beams parallel to all rays, are no exception", "[upbp][extremes]") {
+    const auto finite = [](const std::string& xml, int size, const std::string& parameters) {
+        const auto r =
+            render_statistics(*scene_from(xml, size), *integrator_from(upbp(parameters)), {size, 16, 3});
+        CHECK(r.non_finite == 0);
+    };
+    const std::string foggy = box(grey, fog("0.9", ""));
+    finite(foggy, 1, ""), finite(foggy, 1, crossings_alone("long", "long"));
+    // A lamp outside that shines away from all: light paths without a vertex.
+    std::string dark = foggy;
+    const std::string place = R"(<translate y="0.95"/>)";
+    dark.replace(dark.find(place), place.size(), R"(<rotate x="1" angle="180"/><translate y="9"/>)");
+    finite(dark, 4, "");
+    // Light along the rays of the camera: no two beams cross before the light has scattered.
+    const std::string parallel =
+        R"(<scene version="3.0.0"><shape type="cube"><bsdf type="null"/>)" + fog("0.9", forward(0.3)) +
+        R"(</shape><emitter type="directional"><vector name="direction" x="0" y="0" z="-1"/>
+        <rgb name="irradiance" value="3, 2, 1"/></emitter><sensor type="orthographic"><transform name="to_world">
+        <scale x="0.7" y="0.7"/><lookat origin="0, 0, 3" target="0, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)";
+    finite(parallel, 4, crossings_alone("short", "long"));
+    check_equal(parallel, "volpath", "", 1.1, 8, {"single_scattering"});
 }
