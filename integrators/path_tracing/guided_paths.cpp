@@ -83,7 +83,7 @@ Samples trace_training_pass(const Scene& scene, const RenderOptions& options, co
     trace_pass<Media>(scene, options, settings, pass, guide, counters,
                       [&](std::size_t chunk, std::size_t, EyePacket<Media>& packet) {
                           PathRecorder<Media> recorder;
-                          trace_paths(scene, settings, packet, &recorder);
+                          trace_paths(scene, settings, packet, recorder);
                           recorder.finish(packet, chunks[chunk].surfaces, chunks[chunk].media);
                       });
     Samples all;

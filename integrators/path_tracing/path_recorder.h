@@ -6,19 +6,18 @@
 // MIS weight in it: the field learns what is left to directions.
 #pragma once
 
-#include "integrators/eye_path/eye_packet.h"
+#include "integrators/path_tracing/path_observer.h"
 #include "lights/guiding/learned_guide.h"
 
 namespace mote::integrators {
 
 template <bool Media>
-class PathRecorder {
+class PathRecorder final : public PathObserver<Media> {
   public:
     using Packet = EyePacket<Media>;
     using Lane = typename Packet::Lane;
 
-    /// Before a segment of a lane makes its vertex.
-    void on_segment(int i, const Lane& lane, const EyeSegment& segment) {
+    void on_segment(int i, const Lane& lane, const EyeSegment& segment) override {
         const core::ScatteringVertex& left = lane.path->vertex();
         std::vector<Record>& records = records_[std::size_t(i)];
         if (lane.path->depth() == 1 || !lights::LearnedGuide::guides(left) || records.size() == max_records)
@@ -33,8 +32,7 @@ class PathRecorder {
                            found_[std::size_t(i)],
                            left.on_surface()});
     }
-    /// After the vertex of a lane was connected to lights.
-    void on_vertex(int i, Lane& lane) { found_[std::size_t(i)] = total(lane.sum); }
+    void on_connected(int i, const Lane& lane) override { found_[std::size_t(i)] = total(lane.sum); }
 
     /// Appends the samples of the lanes' paths, which have ended, and forgets them.
     void finish(Packet& packet, std::vector<lights::GuidingSample>& surfaces,

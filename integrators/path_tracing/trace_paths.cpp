@@ -1,7 +1,6 @@
 #include "integrators/path_tracing/trace_paths.h"
 
 #include "compensation/bounded_geometry.h"
-#include "integrators/path_tracing/path_recorder.h"
 
 namespace mote::integrators {
 
@@ -9,12 +8,12 @@ using namespace core;
 
 template <bool Media>
 void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Media>& packet,
-                 PathRecorder<Media>* recorder) {
+                 PathObserver<Media>& observer) {
     using Lane = typename EyePacket<Media>::Lane;
     const bool bounded = std::isfinite(settings.bound);
     const bool lit_along = Media && settings.equiangular && !settings.equiangular->empty();
     const auto light_along = [&](int i, Lane& lane, const EyeSegment& segment) {
-        if (recorder) recorder->on_segment(i, lane, segment);
+        observer.on_segment(i, lane, segment);
         EyePath<Media>& path = *lane.path;
         if (!lit_along || !path.wants_along() || path.depth() == settings.limits.max_depth) return;
         lane.sum[path.layer_along()] +=
@@ -36,12 +35,12 @@ void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Med
     const auto step = [&] {
         if (bounded) packet.for_each(bound_edge);
         packet.sample_lights({lit_along});
-        if (recorder) packet.for_each([&](int i, Lane& lane) { recorder->on_vertex(i, lane); });
+        packet.for_each([&](int i, const Lane& lane) { observer.on_connected(i, lane); });
     };
     packet.run(step, light_along);
 }
 
-template void trace_paths<true>(const Scene&, const PathSettings&, EyePacket<true>&, PathRecorder<true>*);
-template void trace_paths<false>(const Scene&, const PathSettings&, EyePacket<false>&, PathRecorder<false>*);
+template void trace_paths<true>(const Scene&, const PathSettings&, EyePacket<true>&, PathObserver<true>&);
+template void trace_paths<false>(const Scene&, const PathSettings&, EyePacket<false>&, PathObserver<false>&);
 
 }  // namespace mote::integrators

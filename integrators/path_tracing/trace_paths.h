@@ -12,6 +12,7 @@
 #include "integrators/eye_path/eye_packet.h"
 #include "integrators/path_tracing/equiangular.h"
 #include "integrators/path_tracing/guiding_settings.h"
+#include "integrators/path_tracing/path_observer.h"
 
 namespace mote::integrators {
 
@@ -24,13 +25,16 @@ struct PathSettings {
     std::shared_ptr<const EquiangularLights> equiangular{};
 };
 
-template <bool Media>
-class PathRecorder;
-
 /// Follows the paths of a packet, which were started, to their ends: Lane::sum is the radiance along each eye
-/// ray, by layer. `recorder`, if any, receives what arrives at their vertices.
+/// ray, by layer.
 template <bool Media>
 void trace_paths(const core::Scene& scene, const PathSettings& settings, EyePacket<Media>& packet,
-                 PathRecorder<Media>* recorder = nullptr);
+                 PathObserver<Media>& observer);
+/// Unobserved.
+template <bool Media>
+void trace_paths(const core::Scene& scene, const PathSettings& settings, EyePacket<Media>& packet) {
+    PathObserver<Media> idle;
+    trace_paths(scene, settings, packet, idle);
+}
 
 }  // namespace mote::integrators
