@@ -19,8 +19,8 @@
 //
 //   tr S^2 = mean of <Y_a - Y_b, Y_c - Y_d>^2 / ((1/n_a + 1/n_b) (1/n_c + 1/n_d)).                       (3)
 //
-// Where the noise is a few splotches that seldom meet, most pictures show too little of (3): intervals are too
-// narrow, and the error is mostly below them where it is not within.
+// Where the noise is a few splotches that seldom meet, most pictures show too little of (3): intervals are
+// too narrow, and the error is mostly below them where it is not within.
 //
 // Light that is missing. Passes of their own estimate m, independent from pixel to pixel; with the means a, b
 // of their halves, <a, b> has the mean |m|^2. The cross term of Eq. (1) has the mean 0 and the variance (4),
