@@ -261,7 +261,10 @@ TEST_CASE("An interval of the error is stated where it was requested and is know
     CHECK(session::render(scene, one_thread).image.channels == with.image.channels);
 
     CHECK(unknown(session::render(scene, passes(3))) == "too few passes");
-    const Rendered of_other_method = session::render(scene_of("mote_vpl", 16, true), passes(16));
+    const Rendered of_groups = session::render(scene_of("mote_vpl", 16, true), passes(16));
+    REQUIRE(of_groups.error);
+    CHECK(of_groups.error->low < of_groups.error->high);
+    const Rendered of_other_method = session::render(scene_of("mote_photon_map", 16, true), passes(16));
     CHECK(!of_other_method.error);
     CHECK(!unknown(of_other_method).empty());
 }
@@ -282,12 +285,13 @@ TEST_CASE("A limit on the error ends where the interval is below it, with or wit
     } watching;
     CHECK(session::render(scene, settings, watching).passes == rendered.passes);
     CHECK_THROWS_AS(session::render(scene_of("path"), settings), core::InputError);
-    CHECK_THROWS_AS(session::render(scene_of("mote_vpl", 16, true), settings), core::InputError);
+    CHECK_THROWS_AS(session::render(scene_of("mote_photon_map", 16, true), settings), core::InputError);
 }
 
-TEST_CASE("A render with halves continues to the same bits", "[session][resume][halves]") {
+TEST_CASE("A render with halves or groups continues to the same bits", "[session][resume][halves]") {
     const TemporaryFolder folder;
-    const LoadedScene scene = scene_of("mote_layers", 32, true);
+    const std::string integrator = GENERATE("mote_layers", "mote_vpl");
+    const LoadedScene scene = scene_of(integrator, 32, true);
     const Rendered whole = session::render(scene, passes(13));
     RenderSettings settings = passes(6);
     settings.checkpoint = folder.file("film.checkpoint"), settings.keep_checkpoint = true;
