@@ -140,18 +140,24 @@ WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, Path
     return event;
 }
 
-WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
-                          Rgb& emitted, ScatteringPoints& points, WalkContext& context) {
-    WalkEvent event = first_surface(scene, ray, context);
+void walk_to_surface_before(const RayQueries& scene, const Ray& ray, WalkEvent& event, MediumState& state,
+                            PathWeights& weights, Rgb& emitted, ScatteringPoints& points,
+                            WalkContext& context) {
     follow<true, false>(scene, ray, state, weights, event, context,
                         [&](float t0, float t1) -> std::optional<float> {
                             if (const Medium* medium = state.current(); medium && t0 < t1) {
-                                points.begin_part(state);
+                                points.begin_part(state, t0, t1);
                                 medium->scatter_along({ray.origin, ray.direction, t0, t1}, weights, emitted,
                                                       points, context.rng, context.tracking);
                             }
                             return std::nullopt;
                         });
+}
+
+WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
+                          Rgb& emitted, ScatteringPoints& points, WalkContext& context) {
+    WalkEvent event = first_surface(scene, ray, context);
+    walk_to_surface_before(scene, ray, event, state, weights, emitted, points, context);
     return event;
 }
 

@@ -54,9 +54,14 @@ void walk_before(const RayQueries& scene, const Ray& ray, WalkEvent& event, Medi
                  PathWeights& weights, Rgb& emitted, WalkContext& context);
 
 /// Continues to the first surface, or to a pane that reflects the path, or outside: media on the way scatter
-/// at `points` and let the rest through (Medium::scatter_along). For paths whose `weights.light` is black.
+/// at `points` and let the rest through (Medium::scatter_along). For paths whose `weights.light` is black,
+/// and for all where no medium glows.
 WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
                           Rgb& emitted, ScatteringPoints& points, WalkContext& context);
+/// walk_to_surface() once the first surface on the ray is known, as in walk_before().
+void walk_to_surface_before(const RayQueries& scene, const Ray& ray, WalkEvent& event, MediumState& state,
+                            PathWeights& weights, Rgb& emitted, ScatteringPoints& points,
+                            WalkContext& context);
 
 extern template WalkEvent walk<true>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&,
                                      WalkContext&);

@@ -9,7 +9,19 @@ void ScatteringPoints::start(const Rng& rng) {
     parts_.clear(), candidates_.clear(), chosen_.clear();
 }
 
-void ScatteringPoints::begin_part(const MediumState& state) { parts_.push_back(state); }
+void ScatteringPoints::begin_part(const MediumState& state, float begin, float end) {
+    parts_.push_back({state, begin, end});
+}
+
+float ScatteringPoints::distance_of(const ScatteringPoint& point, const Ray& ray) const {
+    const Part& part = parts_[point.part];
+    const float t = glm::dot(point.position - ray.origin, ray.direction);
+    if (t < ray.t_min) return t;  // on an earlier ray, which continued behind a hidden light
+    // A hundred roundings: ends that are met at a grazing angle of more than half a degree.
+    const float margin = 1e-5f * (std::fabs(t) + max_component(glm::abs(point.position)));
+    const float near = part.begin > ray.t_min ? part.begin + margin : part.begin, far = part.end - margin;
+    return near <= far ? std::clamp(t, near, far) : 0.5f * (part.begin + part.end);
+}
 
 void ScatteringPoints::add(const Vec3& position, const Rgb& weight) {
     if (count_ == 0 || !(max_component(weight) > 0.0f)) return;

@@ -2,14 +2,17 @@
 """Guided paths against unguided ones: variance times time, training included.
 
 Usage: guiding.py [--mote build/release/bin/mote] [--seconds 120] [--seeds 4] [--size 320x200] [--scenes NAME,...]
-                  [--set NAME=VALUE ...] [--quick]
+                  [--passes N [--processor]] [--guiding on|automatic] [--set NAME=VALUE ...] [--quick]
 Every scene is rendered for the same time with `guiding` off and on (--set adds settings of the guided renders), with
 several seeds. The variance is that between seeds, relative and weighted as the error of docs/testing.md, Eq. 1; `trimmed`
 leaves out the hundredth of pixels with most of it, where a bright path decides. A gain above 1: guiding pays. The last
-column is the share of the time that training took. Run it on an idle machine.
+columns are the share of the time that training took, the gain in noise for the same work that trial passes of `automatic`
+found, and what was guided. Run it on an idle machine; on one that is shared, --processor takes one thread's processor
+seconds, less those of a render of one pass, instead of the time of the clock.
 """
 import argparse
 import json
+import resource
 import subprocess
 import sys
 import tempfile
@@ -28,29 +31,40 @@ SCENES = {"smoke_room": "scenes/smoke_room.xml", "atrium": "scenes/atrium.xml", 
           "cloud": "scenes/cloud.xml", "bunny_room": f"{FIGURES}/bunny_room.xml"}
 
 
-def render(args, scene, seed, settings, folder):
-    """The picture, and its seconds."""
+def processor_seconds():
+    """Of all programs that have run and ended."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def render(args, scene, seed, settings, folder, passes=None):
+    """The picture, and its statistics, with processor seconds."""
     exr, stats = folder / "p.exr", folder / "p.json"
     width, height = args.size.split("x")
     defined = [f"resx={width}", f"resy={height}", *settings]
-    stop = ["--passes", args.passes] if args.passes else ["--time", args.seconds]
+    stop = ["--passes", passes or args.passes] if args.passes else ["--time", args.seconds]
+    stop += ["-t", "1"] if args.processor else []
+    before = processor_seconds()
     subprocess.run([args.mote, "render", ROOT / SCENES[scene], "--integrator", "volpath", "--quiet", "--seed", seed,
                     *(word for d in defined for word in ("-D", d)), *stop, "-o", exr, "--stats", stats],
                    check=True)
-    return read_exr(exr)[""], json.loads(stats.read_text())
+    return read_exr(exr)[""], {**json.loads(stats.read_text()), "processor": processor_seconds() - before}
 
 
 def measure(args, scene, settings, folder):
-    """Pictures, mean seconds of one, mean passes, and the share of time that training took."""
-    pictures, seconds, passes, training = [], [], [], []
+    """Pictures, mean seconds of one, mean passes, the share of time that training took, and what it found."""
+    pictures, seconds, passes, training, found = [], [], [], [], []
+    one_pass = render(args, scene, "1", [], folder, "1")[1]["processor"] if args.processor else 0.0
     for seed in range(1, args.seeds + 1):
         picture, stats = render(args, scene, str(seed), settings, folder)
         taken = stats["seconds"]
         pictures.append(picture)
-        seconds.append(taken["build"] + taken["render"])
+        wall = taken["build"] + taken["render"]
+        seconds.append(stats["processor"] - one_pass if args.processor else wall)
         passes.append(stats["passes"])
-        training.append(taken.get("guiding", 0.0) / seconds[-1])
-    return np.stack(pictures), np.mean(seconds), np.mean(passes), np.mean(training)
+        training.append(taken.get("guiding", 0.0) / wall)
+        found.append([stats["values"].get(name, 0.0) for name in ("guiding_gain", "guided", "guided_vertices")])
+    return np.stack(pictures), np.mean(seconds), np.mean(passes), np.mean(training), np.mean(found, axis=0)
 
 
 def variance(pictures, mean):
@@ -71,22 +85,26 @@ def main():
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--size", default="320x200")
     parser.add_argument("--scenes", default="smoke_room,atrium,fog,city,door_ajar,lamp_shade")
+    parser.add_argument("--processor", action="store_true", help="processor time of one thread, with --passes")
+    parser.add_argument("--guiding", default="on", help="on, or automatic")
     parser.add_argument("--set", nargs="*", default=[], help="settings of the guided renders: guiding_passes=63")
     parser.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
     args = parser.parse_args()
     if args.quick:
         args.passes, args.seeds, args.size, args.scenes = "2", 2, "16x10", "cornell_box,door_ajar"
-        args.set = ["guiding_passes=3", "guiding_paths=256"]
-    print("scene: variance off, on; gain in variance (trimmed); in variance x seconds (trimmed); passes off, on; training")
+        args.set = ["guiding_share=100", "guiding_paths=256"]
+    print("scene: variance off, on; gain in variance (trimmed); in variance x seconds (trimmed); passes off, on; training; "
+          "gain of trials, guided, vertices")
     with tempfile.TemporaryDirectory() as folder:
         for scene in args.scenes.split(","):
-            guided = ["integrator.guiding=on", *(f"integrator.{s}" for s in args.set)]
+            guided = [f"integrator.guiding={args.guiding}", *(f"integrator.{s}" for s in args.set)]
             runs = [measure(args, scene, settings, Path(folder)) for settings in (["integrator.guiding=off"], guided)]
             mean = np.concatenate([r[0] for r in runs]).mean(axis=0)
             off, on = (np.array(variance(r[0], mean)) for r in runs)
             gain, timed = off / on, off * runs[0][1] / (on * runs[1][1])
             print(f"{scene}: {off[0]:.4g}, {on[0]:.4g}; {gain[0]:.2f} ({gain[1]:.2f}); {timed[0]:.2f} ({timed[1]:.2f}); "
-                  f"{runs[0][2]:.0f}, {runs[1][2]:.0f}; {100 * runs[1][3]:.0f} %", flush=True)
+                  f"{runs[0][2]:.0f}, {runs[1][2]:.0f}; {100 * runs[1][3]:.0f} %; "
+                  + ", ".join(f"{value:.2f}" for value in runs[1][4]), flush=True)
 
 
 if __name__ == "__main__":

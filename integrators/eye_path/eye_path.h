@@ -16,7 +16,7 @@
 #include "integrators/eye_path/scattered_light.h"
 #include "integrators/eye_path/transport_layers.h"
 #include "lights/direct_light/direct_light.h"
-#include "lights/guiding/scattering_guide.h"
+#include "lights/guiding/choose_scattering.h"
 
 namespace mote::integrators {
 
@@ -33,7 +33,7 @@ template <bool Media>
 class EyePath {
   public:
     /// `context` holds the path's generator, which also chooses the channel that drives distances.
-    /// `lights`: the sampled ones, where these are not all. `guide`: of its directions.
+    /// `lights`: the sampled ones, where these are not all. `guide`: of its directions and vertices.
     EyePath(const core::Scene& scene, const EyePathLimits& limits, const EyeRay& eye,
             core::WalkContext& context, const core::LitScene* lights = nullptr,
             const lights::ScatteringGuide& guide = lights::no_guide())
@@ -96,6 +96,15 @@ class EyePath {
             context, sum, on_segment);
     }
 
+    /// True where the guide chooses the next vertex (ScatteringGuide::candidates()).
+    bool chooses_vertex() const { return Media && guides_ && guide_.candidates() > 0; }
+    /// arrive() where the guide chooses the next vertex: the path reaches
+    /// the end of the segment with certainty, weighted by its transmittance, counts the light there, and
+    /// continues at the surface or at one of the candidates that media leave at `points`.
+    template <typename OnSegment>
+    bool arrive_by_choice(core::WalkEvent& event, core::WalkContext& context, TransportSum& sum,
+                          core::ScatteringPoints& points, const OnSegment& on_segment);
+
     // At a vertex:
     const core::ScatteringVertex& vertex() const { return vertex_; }
     /// Next-event estimation: light of one light sampled for the vertex (lights/direct_light/direct_light.h).
@@ -123,7 +132,10 @@ class EyePath {
     /// Light of a connection that nothing occludes.
     core::Rgb finish_light(const lights::LightConnection& connection, core::WalkContext& context,
                            const lights::LightSampling& how) {
-        return lights::finish_connection<Media>(lights_, vertex_, weights_, state_, connection, context, how);
+        lights::LightSampling sampling = how;
+        sampling.passes_media = chooses_vertex();
+        return lights::finish_connection<Media>(lights_, vertex_, weights_, state_, connection, context,
+                                                sampling);
     }
     /// The vertex at a scattering point of the last segment.
     core::ScatteringVertex vertex_at(const core::Vec3& position, const core::MediumState& state) const {
@@ -146,6 +158,7 @@ class EyePath {
     core::MediumState& state() { return state_; }      ///< media on the side where the path is
     core::PathWeights& weights() { return weights_; }  ///< of the path so far
     core::Sampler& sampler() { return sampler_; }      ///< of the path, for what is sampled at the vertex
+    const lights::VmfMixture& guided() const { return guided_; }  ///< directions of the guide at the vertex
     /// The weight of light that reaches the path's end.
     core::Rgb throughput() const { return lights::throughput_of<Media>(weights_); }
     /// The length of hidden lights' part of the first segment, which ray() no longer holds [m].
@@ -176,7 +189,16 @@ class EyePath {
     }
     template <typename Walk, typename OnSegment>
     bool arrive_by(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
-                   const OnSegment& on_segment);
+                   const OnSegment& on_segment) {
+        find_light(walk, event, sum, on_segment);
+        return make_next_vertex(event);
+    }
+    template <typename Walk, typename OnSegment>
+    void find_light(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
+                    const OnSegment& on_segment);
+    bool make_next_vertex(const core::WalkEvent& event);
+    bool has_ended() const { return depth_ == limits_.max_depth || scatterings_ == limits_.max_scatterings; }
+    void choose_vertex(const core::ScatteringPoints& points, core::WalkEvent& event, float u);
     bool scatter(core::WalkContext& context);
     bool wants_more() const;
     /// Lights that the camera does not see: the first segment continues behind them.
@@ -193,6 +215,7 @@ class EyePath {
     core::PathWeights weights_;
     core::ScatteringVertex vertex_;
     lights::VmfMixture guided_;  ///< directions of the guide at the vertex
+    bool guides_ = true;         ///< false: the path goes on from the vertex without the guide
     core::Vec2 choices_{0.0f};   ///< of the light, and of the lobe
     core::LightReceiver previous_;
     bool connected_ = false;  ///< next-event estimation at `previous_` could find the next light
@@ -226,11 +249,50 @@ bool EyePath<Media>::arrive(core::WalkEvent& event, core::WalkContext& context, 
     return arrive_by(walk, event, sum, on_segment);
 }
 
-/// walk(emitted) sets `event`.
+template <bool Media>
+template <typename OnSegment>
+bool EyePath<Media>::arrive_by_choice(core::WalkEvent& event, core::WalkContext& context, TransportSum& sum,
+                                      core::ScatteringPoints& points, const OnSegment& on_segment) {
+    points.start(core::Rng(context.rng.next_u32()));
+    bool first = true;  // as in arrive()
+    const auto walk = [&](core::Rgb& emitted) {
+        if (std::exchange(first, false))
+            core::walk_to_surface_before(scene_, ray_, event, state_, weights_, emitted, points, context);
+        else
+            event = core::walk_to_surface(scene_, ray_, state_, weights_, emitted, points, context);
+    };
+    find_light(walk, event, sum, on_segment);
+    if (has_ended()) return false;
+    choose_vertex(points, event, context.rng.next_float());
+    return make_next_vertex(event);
+}
+
+/// Makes `event` the one of the chosen vertex. The throughput turns black where there is none.
+template <bool Media>
+void EyePath<Media>::choose_vertex(const core::ScatteringPoints& points, core::WalkEvent& event, float u) {
+    const bool surface = event.kind == core::WalkEvent::Kind::surface;
+    const auto candidates = points.kept();
+    const lights::ScatteringChoice choice = lights::choose_scattering(
+        candidates, surface ? weights_.throughput : core::Rgb(0.0f), event.hit.position, guide_, u);
+    if (!(choice.probability > 0.0f)) {
+        weights_.throughput = core::Rgb(0.0f);
+        return;
+    }
+    if (choice.index < candidates.size()) {
+        const core::ScatteringPoint& point = candidates[choice.index];
+        state_ = points.state_of(point), weights_.throughput = point.weight;
+        event.kind = core::WalkEvent::Kind::collision, event.medium = state_.current();
+        event.distance = points.distance_of(point, ray_), event.reflected = false, event.stop_chance = 1.0f;
+    }
+    weights_.throughput /= choice.probability;
+    guide_ratio_ *= choice.probability / choice.by_extinction;
+}
+
+/// Adds the light that a walk finds to `sum`. walk(emitted) sets `event`.
 template <bool Media>
 template <typename Walk, typename OnSegment>
-bool EyePath<Media>::arrive_by(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
-                               const OnSegment& on_segment) {
+void EyePath<Media>::find_light(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
+                                const OnSegment& on_segment) {
     core::Rgb& found = sum[layer_of_emission()];
     const auto go = [&] {
         const core::MediumState start = state_;
@@ -247,11 +309,16 @@ bool EyePath<Media>::arrive_by(const Walk& walk, const core::WalkEvent& event, T
     if (limits_.wanted[layer_of_emission()] && !hidden)
         found +=
             lights::found_light<Media>(lights_, event, ray_, weights_, connected_ ? &previous_ : nullptr);
-    if (event.kind == core::WalkEvent::Kind::escaped || depth_ == limits_.max_depth ||
-        scatterings_ == limits_.max_scatterings || core::is_black(weights_.throughput))
+}
+
+/// Returns false where the path ends.
+template <bool Media>
+bool EyePath<Media>::make_next_vertex(const core::WalkEvent& event) {
+    if (event.kind == core::WalkEvent::Kind::escaped || has_ended() || core::is_black(weights_.throughput))
         return false;
     vertex_ = make_vertex(event, ray_), segment_length_ = event.distance;
-    guide_.find(vertex_, guided_);
+    guides_ = lights::within_guided_window(guide_ratio_), guided_.empty = true;
+    if (guides_) guide_.find(vertex_, guided_);
     choices_ = sampler_.next_2d();
     return true;
 }

@@ -1,7 +1,5 @@
 #include "integrators/path_tracing/path_estimator.h"
 
-#include <chrono>
-
 #include "integrators/eye_path/image_loop.h"
 #include "integrators/path_tracing/guided_paths.h"
 #include "integrators/path_tracing/wavefront.h"
@@ -18,17 +16,16 @@ class PathEstimator final : public Estimator {
     PathEstimator(const Scene& scene, const RenderOptions& options, const PathSettings& settings)
         : scene_(scene), settings_(settings), loop_(scene, options) {
         settings_.limits.wanted = options.cells;
-        if (settings_.guiding.mode != Guiding::off) train(options);
-        if (!Media && !guide_ && WavefrontScene::suits(scene, settings_))
-            wavefront_.emplace(scene, settings_.limits);
+        if (!Media && WavefrontScene::suits(scene, settings_)) wavefront_.emplace(scene, settings_.limits);
+        guides_ = make_pass_guides<Media>(scene, options, settings_, guided_ray_work(), loop_.counters());
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
-        const lights::ScatteringGuide& guide = guide_ ? *guide_ : lights::no_guide();
+        const lights::ScatteringGuide& guide = guides_->guide_of(context.index, context.cancelled);
         const EyePacketSettings eye{.limits = settings_.limits, .guide = guide};
         return loop_.run(context, image, eye, [&](EyeTask<Media>& task) {
             if (wavefront_) {
-                Wavefront paths(*wavefront_, task.walk());
+                Wavefront paths(*wavefront_, task.walk(), guide);
                 task.trace_all(paths);
                 return;
             }
@@ -38,33 +35,18 @@ class PathEstimator final : public Estimator {
     }
     void add_statistics(Statistics& statistics) const override {
         loop_.add_statistics(statistics);
-        if (settings_.guiding.mode == Guiding::off) return;
-        statistics.seconds["guiding"] += training_seconds_;
-        statistics.values["guided"] = guide_ ? 1.0 : 0.0;
-        if (!guide_) return;
-        statistics.values["guiding_leaves"] +=
-            double(guide_->surfaces().leaves().size() + guide_->media().leaves().size());
+        guides_->add_statistics(statistics);
     }
 
   private:
-    void train(const RenderOptions& options) {
-        const auto start = std::chrono::steady_clock::now();
-        guide_ = train_guide<Media>(scene_, options, settings_, loop_.counters());
-        if (settings_.guiding.mode == Guiding::automatic &&
-            !guide_pays<Media>(scene_, options, settings_, *guide_, guided_ray_work(), loop_.counters()))
-            guide_.reset();
-        training_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
-    /// Processor time of a guided path's ray over that of an unguided one: the guide's own, and what unguided
-    /// paths gain by wavefronts (docs/methods/guiding.md, "Cost").
-    double guided_ray_work() const { return !Media && WavefrontScene::suits(scene_, settings_) ? 2.2 : 1.1; }
+    /// Processor time of a guided path's ray over that of an unguided one (docs/methods/guiding.md, "Cost").
+    double guided_ray_work() const { return wavefront_ ? 2.0 : 1.1; }
 
     const Scene& scene_;
     PathSettings settings_;
     std::optional<WavefrontScene> wavefront_;  ///< for scenes that it suits
     ImageLoop<Media> loop_;
-    std::unique_ptr<const lights::LearnedGuide> guide_;  ///< of guided paths
-    double training_seconds_ = 0.0;
+    std::unique_ptr<PassGuides> guides_;
 };
 
 }  // namespace

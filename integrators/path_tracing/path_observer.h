@@ -15,7 +15,9 @@ class PathObserver {
     virtual ~PathObserver() = default;
     /// Before a segment of a lane makes its vertex.
     virtual void on_segment(int /*i*/, const Lane&, const EyeSegment&) {}
-    /// After the vertex, if there is one, was connected to lights.
+    /// After a segment, before its vertex is connected to lights; there is none where the lane has ended.
+    virtual void on_arrival(int /*i*/, const Lane&) {}
+    /// After the vertex was connected to lights.
     virtual void on_connected(int /*i*/, const Lane&) {}
 };
 

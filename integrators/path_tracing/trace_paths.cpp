@@ -34,6 +34,7 @@ void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Med
     };
     const auto step = [&] {
         if (bounded) packet.for_each(bound_edge);
+        packet.for_each([&](int i, const Lane& lane) { observer.on_arrival(i, lane); });
         packet.sample_lights({lit_along});
         packet.for_each([&](int i, const Lane& lane) { observer.on_connected(i, lane); });
     };

@@ -7,10 +7,14 @@
 // however bright it is. With them
 //   weight_k     = (n W_k / W + a) / (n + K a),
 //   mean cosine  = n_k / (n_k + b) |R_k| / W_k,
-// are the maximum a posteriori. Each lobe also has the weighted mean of its samples' inverse distances, from
+// are the maximum a posteriori. The probability of a direction of the mixture instead of one of the vertex is
+// the one of a few whose directions would have left the least second moment of what is scattered,
+//   sum (f cos L / p)^2 p / p_alpha,   p_alpha = (1 - alpha) p_vertex + alpha p_mixture.
+// Each lobe also has the weighted mean of its samples' inverse distances, from
 // which the mixture of a leaf is seen by parallax from any of its points.
 #pragma once
 
+#include <iterator>
 #include <span>
 
 #include "lights/guiding/vmf_mixture.h"
@@ -19,15 +23,20 @@ namespace mote::lights {
 
 /// Incident radiance found in one direction.
 struct GuidingSample {
-    core::Vec3 position;     ///< where it arrives [m]
-    core::Vec3 direction;    ///< unit, to where it comes from
-    float weight;            ///< radiance over the density of the direction; finite, not negative
-    float inverse_distance;  ///< of where it comes from [1/m]; 0: from outside of the scene
+    core::Vec3 position;             ///< where it arrives [m]
+    core::Vec3 direction;            ///< unit, to where it comes from
+    float weight;                    ///< radiance over the density of the direction; finite, not negative
+    float inverse_distance;          ///< of where it comes from [1/m]; 0: from outside of the scene
+    float scattered = 0.0f;          ///< f cos there, averaged over channels; 0: without a guide
+    float own = 1.0f, guide = 0.0f;  ///< densities of vertex and mixture, over that of the direction
 };
 
 /// A mixture that learns.
 class MixtureFit {
   public:
+    using Sample = GuidingSample;
+    static constexpr double inherited = 0.5;  ///< by each half of a leaf (spatial_tree.h)
+
     /// An even mixture, as seen from `pivot`.
     explicit MixtureFit(const core::Vec3& pivot) : pivot_(pivot) {}
 
@@ -41,6 +50,8 @@ class MixtureFit {
     /// The mixture at a point, by parallax. Empty before light was found.
     VmfMixture at(const core::Vec3& position) const;
 
+    /// Probability of a direction of the mixture; a half before enough was learned.
+    float probability() const;
     double samples() const { return samples_; }                    ///< those without light too
     double light() const;                                          ///< sum of all weights
     const VmfMixture& mixture() const { return mixture_; }         ///< as seen from pivot()
@@ -52,7 +63,8 @@ class MixtureFit {
         double weight = 0.0, squares = 0.0, inverse_distance = 0.0;
         core::Vec3d direction{0.0};
     };
-    void expect(std::span<const GuidingSample> samples, Sums (&sums)[VmfMixture::capacity]) const;
+    void expect(std::span<const GuidingSample> samples, double bound,
+                Sums (&sums)[VmfMixture::capacity]) const;
     void maximise(const Sums (&sums)[VmfMixture::capacity]);
 
     core::Vec3 pivot_;
@@ -60,6 +72,8 @@ class MixtureFit {
     float distances_[VmfMixture::capacity] = {};
     Sums sums_[VmfMixture::capacity];
     double samples_ = 0.0;
+    static constexpr float probabilities[] = {0.1f, 0.3f, 0.5f, 0.7f, 0.9f};
+    double second_moments_[std::size(probabilities)] = {};  ///< with each
 };
 
 }  // namespace mote::lights

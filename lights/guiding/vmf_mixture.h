@@ -13,7 +13,8 @@ struct alignas(32) VmfMixture {
     float x[capacity], y[capacity], z[capacity];      ///< mean directions of the lobes
     float kappa[capacity];                            ///< concentrations
     float normalization[capacity], weight[capacity];  ///< c of each; the weights of all add up to 1
-    bool empty = true;                                ///< without lobes; nothing else is set
+    float probability = 0.5f;  ///< of a direction of the mixture, not of the vertex (scattering_guide.h)
+    bool empty = true;         ///< without lobes; nothing else is set
 
     /// Lobe k.
     VmfLobe lobe(int k) const { return {{x[k], y[k], z[k]}, kappa[k]}; }

@@ -13,14 +13,16 @@
 using namespace mote;
 using namespace mote::core;
 using namespace mote::tests;
+using integrators::Guiding, integrators::TrainedGuides;
 
 namespace {
 
 std::shared_ptr<const Integrator> paths(const std::string& type, const std::string& guiding,
                                         const std::string& more = "") {
     return integrator_from(fmt::format(
-        R"(<integrator type="{}"><string name="guiding" value="{}"/><integer name="guiding_passes" value="7"/>
-        <integer name="guiding_paths" value="2048"/><float name="guiding_leaf_samples" value="500"/>{}</integrator>)",
+        R"(<integrator type="{}"><string name="guiding" value="{}"/><integer name="guiding_passes" value="28"/>
+        <integer name="guiding_paths" value="512"/><float name="guiding_share" value="8"/>
+        <float name="guiding_leaf_samples" value="500"/>{}</integrator>)",
         type, guiding, more));
 }
 
@@ -33,10 +35,32 @@ void check_equal(const Scene& scene, const std::string& type, std::uint32_t pass
     CHECK(guided.non_finite == 0);
 }
 
-/// A guide whose lobes point anywhere, whose density counts as `factor` times what it is.
+/// After training, as much as is allowed.
+template <bool Media>
+Statistics statistics_of(const Scene& scene, Guiding mode, int passes, int paths) {
+    RenderOptions options;
+    options.width = options.height = 16;
+    integrators::PathSettings settings;
+    settings.guiding = {.mode = mode, .passes = passes, .paths = paths};
+    integrators::SharedCounters counters;
+    TrainedGuides<Media> guides(scene, options, settings, 1.1, counters);
+    guides.guide_of(1'000'000, {});
+    Statistics statistics;
+    guides.add_statistics(statistics);
+    return statistics;
+}
+
+/// A guide whose lobes point anywhere, whose density counts as `factor` times what it is; and one that
+/// expects anything of vertices.
 class AnyGuide final : public lights::ScatteringGuide {
   public:
-    explicit AnyGuide(float factor) : factor_(factor) {}
+    explicit AnyGuide(float factor, bool vertices = false) : factor_(factor), vertices_(vertices) {}
+    int candidates() const override { return vertices_ ? 8 : 0; }
+    lights::ExpectedRadiance expected(const Vec3& p, bool on_surface) const override {
+        if (!vertices_) return {};
+        const float mean = (on_surface ? 1.0f : 0.5f) + std::sin(5.0f * p.x) * std::cos(7.0f * p.y);
+        return {std::fabs(mean), true};
+    }
     void find(const ScatteringVertex& vertex, lights::VmfMixture& lobes) const override {
         lobes.empty = true;
         if (!lights::LearnedGuide::guides(vertex)) return;
@@ -48,6 +72,7 @@ class AnyGuide final : public lights::ScatteringGuide {
 
   private:
     float factor_;
+    bool vertices_;
 };
 
 /// Paths with a guide of a test.
@@ -129,6 +154,58 @@ TEST_CASE("A guide of any directions keeps the mean; a density that is not its o
     CHECK_FALSE(same_mean(wrong, "beauty", reference, "beauty", OnFailure::nothing).passed);
 }
 
+TEST_CASE("A guide that expects anything of vertices keeps the mean", "[guiding]") {
+    const auto path = std::filesystem::temp_directory_path() / "mote_guided_vertices.vol";
+    for (const std::string& medium : {forward_fog, smoke_medium(path.string())}) {
+        const auto scene = scene_from(box(mixed, medium), 8);
+        const auto reference =
+            render_statistics(*scene, *integrator_from(R"(<integrator type="volpath"/>)"), {4, 1500, 1});
+        const auto any = render_statistics(*scene, PathsOf(AnyGuide(1.0f, true)), {4, 3000, 2});
+        for (const std::string& layer : reference.layers) check_same_mean(any, layer, reference, layer);
+        check_same_mean(any, "beauty", reference, "beauty", {1.1});
+    }
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("Guided paths keep the mean with directions alone", "[guiding][equality]") {
+    const std::string directions = R"(<boolean name="guiding_vertices" value="false"/>)";
+    check_equal(*scene_from(box(grey, forward_fog), 16), "volpath", 3000, directions);
+}
+
+TEST_CASE("Guided vertices keep the mean among panes and with lights that the camera does not see",
+          "[guiding][equality]") {
+    check_equal(*scene_from(leafy_box(forward_fog), 16), "volpath", 3000,
+                R"(<boolean name="hide_emitters" value="true"/>)");
+}
+
+TEST_CASE("Guided vertices in media that absorb nothing are in equilibrium", "[guiding][furnace]") {
+    for (const double depth : {0.01, 1.0, 30.0})
+        for (const double z : {-4.0, -0.3}) {
+            const auto scene = scene_from(
+                fmt::format(
+                    R"(<scene version="3.0.0"><emitter type="constant"/><shape type="sphere"><bsdf type="null"/>
+                <medium type="homogeneous" name="interior"><float name="sigma_t" value="{}"/><float name="albedo" value="1"/>
+                <phase type="hg"><float name="g" value="0.7"/></phase></medium></shape><sensor type="perspective">
+                <float name="fov" value="30"/><transform name="to_world"><lookat origin="0, 0, {}" target="0, 0, 1"
+                up="0, 1, 0"/></transform></sensor></scene>)",
+                    depth / 2.0, z),
+                8);
+            CAPTURE(depth, z);
+            check_mean_is(render_statistics(*scene, *paths("volpath", "on"), {4, 400, 7}), "beauty", 1.0);
+        }
+}
+
+TEST_CASE("Media that glow are guided by directions alone", "[guiding]") {
+    const std::string glowing =
+        R"(<medium type="homogeneous" name="interior"><float name="sigma_t" value="1"/><float name="albedo" value="0.5"/>
+        <rgb name="Le" value="1, 2, 3"/></medium>)";
+    const auto scene = scene_from(box(grey, glowing), 8);
+    check_equal(*scene, "volpath", 1500);
+    CHECK(statistics_of<true>(*scene, Guiding::on, 7, 2048).values.at("guided_vertices") == 0.0);
+    const auto clear = scene_from(box(grey, forward_fog), 8);
+    CHECK(statistics_of<true>(*clear, Guiding::on, 7, 2048).values.at("guided_vertices") == 1.0);
+}
+
 TEST_CASE("A closed furnace is one with guided paths", "[guiding]") {
     // Radiance 1 from all walls of a closed box that absorb nothing: E / (1 - rho) with rho = 1/2, E = 1/2.
     const std::string xml =
@@ -148,12 +225,14 @@ TEST_CASE("What is learned is where light comes from", "[guiding]") {
     RenderOptions options;
     options.width = options.height = 16, options.seed = 3;
     integrators::PathSettings settings;
-    settings.guiding = {integrators::Guiding::on, 7, 4096, 1000.0, 8.0};
+    settings.guiding = {.mode = Guiding::on, .paths = 4096, .leaf_samples = 1000.0, .memory = 8.0};
     integrators::SharedCounters counters;
-    const auto guide = integrators::train_guide<false>(*scene, options, settings, counters);
-    CHECK(guide->surfaces().leaves().size() > 10);
-    CHECK(guide->media().leaves().empty());
-    const lights::VmfMixture floor = guide->surfaces().at({-0.5f, -0.999f, 0.2f});
+    TrainedGuides<false> guides(*scene, options, settings, 1.0, counters);
+    for (int i = 0; i < 7; ++i) guides.train({});
+    const lights::LearnedGuide& guide = guides.learned();
+    CHECK(guide.surfaces().leaves().size() > 10);
+    CHECK(guide.media().leaves().empty());
+    const lights::VmfMixture floor = guide.surfaces().at({-0.5f, -0.999f, 0.2f});
     REQUIRE_FALSE(floor.empty);
     double up = 0.0;
     Rng rng(1);
@@ -195,14 +274,7 @@ std::string lamp_upwards() {
 }
 
 bool automatic_guides(const Scene& scene) {
-    RenderOptions options;
-    options.width = options.height = 16;
-    const auto integrator =
-        integrator_from(R"(<integrator type="path"><string name="guiding" value="automatic"/>
-        <integer name="guiding_passes" value="15"/><integer name="guiding_paths" value="8192"/></integrator>)");
-    Statistics statistics;
-    integrator->prepare(scene, options)->add_statistics(statistics);
-    return statistics.values.at("guided") > 0.0;
+    return statistics_of<false>(scene, Guiding::automatic, 32, 4096).values.at("guided") > 0.0;
 }
 
 }  // namespace

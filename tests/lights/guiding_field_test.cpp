@@ -98,6 +98,55 @@ TEST_CASE("One sample, however bright, leaves a wide mixture", "[guiding]") {
     for (int i = 0; i < 200; ++i) CHECK(m.pdf_solid_angle(direction(rng)) > 1e-5f);
 }
 
+TEST_CASE("A caustic that appeared once in training is forgotten", "[guiding]") {
+    // A path a million times as bright as all others: it draws at most its lobes, which later passes bring
+    // back to where light is; directions keep their density meanwhile.
+    MixtureFit fit(Vec3(0.0f)), calm(Vec3(0.0f));
+    const Vec3 firefly = glm::normalize(Vec3(0.3f, -1.0f, 0.1f));
+    auto samples = samples_of(three_lobes(), 4000, 4);
+    calm.add(samples);
+    double light = 0.0;
+    for (const GuidingSample& s : samples) light += double(s.weight);
+    samples.push_back({Vec3(0.0f), firefly, float(1e6 * light), 0.0f});
+    fit.add(samples);
+    for (const GuidingSample& s : samples) CHECK(fit.at(Vec3(0.0f)).pdf_solid_angle(s.direction) > 1e-4f);
+    for (int pass = 0; pass < 30; ++pass) {  // each weighs what was learned before by half
+        fit.scale(0.5), calm.scale(0.5);
+        const auto later = samples_of(three_lobes(), 4000, std::uint64_t(10 + pass));
+        fit.add(later), calm.add(later);
+    }
+    const double locked = divergence(three_lobes(), fit.at(Vec3(0.0f)));
+    CAPTURE(locked, divergence(three_lobes(), calm.at(Vec3(0.0f))));
+    CHECK(locked < 0.1);
+}
+
+TEST_CASE("The probability of the guide's directions is learned", "[guiding]") {
+    // Uniform directions by the vertex, half of them; the others by a mixture that is the radiance, or is
+    // not.
+    const auto learned = [](const VmfMixture& radiance) {
+        const VmfMixture guide = three_lobes();
+        Rng rng(8);
+        std::vector<GuidingSample> samples;
+        for (int i = 0; i < 4000; ++i) {
+            const float u = rng.next_float();
+            const Vec2 v = rng.next_vec2();
+            const Vec3 w = u < 0.5f ? guide.sample(2.0f * u, v) : glm::normalize(square_to_sphere(v));
+            const float p = 0.5f * inv_four_pi + 0.5f * guide.pdf_solid_angle(w);
+            samples.push_back({Vec3(0.0f), w, radiance.pdf_solid_angle(w) / p, 0.0f, 1.0f, inv_four_pi / p,
+                               guide.pdf_solid_angle(w) / p});
+        }
+        MixtureFit fit(Vec3(0.0f));
+        fit.add(std::span(samples).first(100));
+        CHECK(fit.probability() == 0.5f);  // not enough yet
+        fit.add(samples);
+        return fit.at(Vec3(0.0f)).probability;
+    };
+    CHECK(learned(three_lobes()) == 0.9f);
+    VmfMixture even = even_mixture();
+    for (int k = 0; k < VmfMixture::capacity; ++k) even.set(k, {}, 1.0f / float(VmfMixture::capacity));
+    CHECK(learned(even) == 0.1f);
+}
+
 TEST_CASE("Nothing learned is an empty mixture, and directions without light teach nothing", "[guiding]") {
     GuidingField f = field();
     CHECK(f.at(Vec3(1.0f)).empty);
