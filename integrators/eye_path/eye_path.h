@@ -215,7 +215,7 @@ class EyePath {
     core::PathWeights weights_;
     core::ScatteringVertex vertex_;
     lights::VmfMixture guided_;  ///< directions of the guide at the vertex
-    bool guides_ = true;         ///< false: the path goes on from the vertex without the guide
+    bool guides_ = true;         ///< false: from the vertex the path continues without the guide
     core::Vec2 choices_{0.0f};   ///< of the light, and of the lobe
     core::LightReceiver previous_;
     bool connected_ = false;  ///< next-event estimation at `previous_` could find the next light

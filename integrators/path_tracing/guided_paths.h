@@ -1,7 +1,7 @@
 // Guides of the passes of a picture: paths learn where light comes from while the picture is made.
 //
 // Training passes precede the picture's passes, as many as keep their counted work below a share of what the
-// picture's passes before have taken; passes 1, 2, 4, ... weigh what was learned before by half, since later
+// picture's passes before have taken; passes 1, 2, 4, ... halve what was learned before, since later
 // ones are guided better. Training paths are none of the picture, and depend on scene, seed and their number
 // alone: the guide of a pass is the same on any number of threads, and after a resume, or for a share of the
 // passes on another machine, where it is trained again. Passes of the picture are as independent of each

@@ -42,7 +42,7 @@ inline float guided_pdf(const VmfMixture& lobes, const core::Vec3& wi, float own
     return (1.0f - lobes.probability) * own_pdf + lobes.probability * factor * lobes.pdf_solid_angle(wi);
 }
 
-/// False where a guide has changed the weight of a path so much that the path is to go on without it:
+/// False where a guide has changed the weight of a path so much that the path is to continue without it:
 /// factors of many vertices multiply, and what they multiply to would have no bound. `ratio`: density of the
 /// path's choices over that without a guide.
 inline bool within_guided_window(float ratio) { return ratio > 0.25f && ratio < 64.0f; }

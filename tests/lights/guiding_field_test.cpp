@@ -110,7 +110,7 @@ TEST_CASE("A caustic that appeared once in training is forgotten", "[guiding]") 
     samples.push_back({Vec3(0.0f), firefly, float(1e6 * light), 0.0f});
     fit.add(samples);
     for (const GuidingSample& s : samples) CHECK(fit.at(Vec3(0.0f)).pdf_solid_angle(s.direction) > 1e-4f);
-    for (int pass = 0; pass < 30; ++pass) {  // each weighs what was learned before by half
+    for (int pass = 0; pass < 30; ++pass) {  // each halves what was learned before
         fit.scale(0.5), calm.scale(0.5);
         const auto later = samples_of(three_lobes(), 4000, std::uint64_t(10 + pass));
         fit.add(later), calm.add(later);
