@@ -110,7 +110,7 @@ class RenderWork {
         r.memory = settings_.memory.without(
             settings_.auxiliary ? center_bytes * double(size.width) * double(size.height) : 0.0);
         r.noise_is_known = plan_.noise_unknown.empty();
-        r.split = plan_.split(size.interval);
+        if (size.interval) r.split = plan_.split();
         r.content_hash = hash_, r.features = features_of(scene_, settings_);
         r.interrupted = &watched_.stop(), r.time_is_over = &watched_.time_is_over();
         r.keep_part_of_first_pass = !settings_.range;

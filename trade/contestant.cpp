@@ -92,7 +92,7 @@ double projection(const core::PassImage& image, const core::Film& film, std::siz
 core::Film make_film(const core::Scene& scene, const core::Integrator& integrator) {
     const core::FilmSettings& film = scene.film();
     std::vector<core::Layer> layers = integrator.layers(scene);
-    const core::PassSplit split = integrator.plan(scene, core::find_requirements(scene)).split(film.interval);
+    const core::PassSplit split = core::pass_split(scene, integrator);
     core::FilmMemory(film.width, film.height, layers, false, {}, split).require({});
     return {film.width, film.height, std::move(layers), false, split};
 }

@@ -21,7 +21,7 @@ class FirstPass {
   public:
     FirstPass(const session::LoadedScene& scene, std::uint64_t seed)
         : scene_(scene.scene()),
-          options_(core::render_options(scene_, seed, scene.plan().split(scene_.film().interval))),
+          options_(core::render_options(scene_, seed, core::pass_split(scene_, scene.integrator()))),
           filter_(core::film_filter(scene_)),
           method_(scene.integrator().type()),
           lights_(scene.integrator().point_lights(scene_, options_)) {

@@ -90,7 +90,7 @@ Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares, P
     for (const Layer& layer : layers_)
         layer_squares_.emplace_back(all_squares_ || layer.squares ? 3 * pixels() : 0);
     for (std::size_t i = 0; i < layers_.size(); ++i) {
-        const std::size_t kept = splits(i) ? 3 * pixels() : 0;
+        const std::size_t kept = has_squares(i) && splits_layer(split_, layers_[i]) ? 3 * pixels() : 0;
         odd_sums_.emplace_back(kept), odd_squares_.emplace_back(kept);
     }
     replaced_.resize(layers_.size());
@@ -98,13 +98,6 @@ Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares, P
     find_where();
     if (split_ == PassSplit::groups && parts() > 1)
         throw std::invalid_argument("groups of passes of several parts");
-}
-
-bool Film::splits(std::size_t layer) const {
-    const bool wanted = split_ == PassSplit::halves   ? !layers_[layer].auxiliary
-                        : split_ == PassSplit::groups ? layers_[layer].missing
-                                                      : false;
-    return wanted && has_squares(layer);
 }
 
 void Film::find_parts() {

@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "core/film/exact_sums.h"
-#include "core/film/pass_image.h"
+#include "core/film/pass_split.h"
 #include "core/math/sampler.h"
 #include "core/metrics/halves_error.h"
 #include "core/objects/memory_budget.h"
@@ -31,9 +31,6 @@
 namespace mote::core {
 
 struct PassGroup;
-
-/// Independent parts of the passes that a film has sums over.
-enum class PassSplit : std::uint8_t { whole, halves, groups };
 
 /// Sums that a film keeps besides those of its layers.
 struct KeptSums {
@@ -208,7 +205,6 @@ class Film {
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
     bool has_replaced_variance() const;
     bool every_layer_is_filtered() const;  ///< by halves: set_halves()
-    bool splits(std::size_t layer) const;  ///< keeps sums over the passes of odd index
     std::optional<PictureError> error_of_halves() const;
     std::optional<PictureError> error_of_groups() const;
     std::vector<PassGroup> groups_of_passes() const;

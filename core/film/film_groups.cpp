@@ -4,24 +4,21 @@
 #include "core/film/film.h"
 #include "core/film/for_each_pixel.h"
 #include "core/metrics/group_error.h"
+#include "core/metrics/neighbourhood.h"
 
 namespace mote::core {
 
 namespace {
 
-/// Mean of both halves over 5 x 5 pixels.
+/// Mean of both halves over the pixels around each.
 std::vector<Rgb> smoothed_mean(const PictureHalf& a, const PictureHalf& b, int width, int height) {
-    constexpr int reach = 2;
     std::vector<Rgb> result(a.passes.size());
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             Rgb sum(0.0f);
             float count = 0.0f;
-            for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
-                for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u) {
-                    const auto p = std::size_t(v * width + u);
-                    sum += a.passes[p] + b.passes[p], count += 2.0f;
-                }
+            for_each_near(x, y, width, height,
+                          [&](std::size_t p) { sum += a.passes[p] + b.passes[p], count += 2.0f; });
             result[std::size_t(y * width + x)] = sum / count;
         }
     return result;

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/math/sampler.h"
+
 namespace mote::core {
 
 namespace {
@@ -20,9 +22,7 @@ FilmMemory::FilmMemory(int width, int height, std::span<const Layer> layers, boo
     for (const Layer& layer : layers) {
         const bool squares = all_squares || layer.squares;
         parts = std::max(parts, double(layer.part) + 1.0);
-        const bool split_too =
-            (split == PassSplit::halves && !layer.auxiliary) || (split == PassSplit::groups && layer.missing);
-        kept += !squares ? 1.0 : split_too ? 4.0 : 2.0;
+        kept += !squares ? 1.0 : splits_layer(split, layer) ? 4.0 : 2.0;
         planes += layer.auxiliary && squares ? 2.0 : 1.0;
     }
     // 2^k passes have k differences of blocks; a block that waits for its other half is one of these in

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "core/film/film.h"
+#include "core/film/pass_split.h"
 #include "core/objects/memory_budget.h"
 
 namespace mote::core {

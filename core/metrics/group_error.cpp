@@ -55,9 +55,8 @@ std::vector<Picture> deviations(std::span<const PassGroup> groups) {
 
 using Gram = std::vector<std::vector<double>>;
 
-/// <Y_a - X, Y_b - X>
-Gram products(std::span<const PassGroup> groups, const RelativeWeights& weights) {
-    const std::vector<Picture> d = deviations(groups);
+/// <Y_a - X, Y_b - X>; `d`: the deviations.
+Gram products(std::span<const Picture> d, const RelativeWeights& weights) {
     Gram gram(d.size(), std::vector<double>(d.size()));
     for (std::size_t a = 0; a < d.size(); ++a)
         for (std::size_t b = 0; b <= a; ++b) gram[a][b] = gram[b][a] = product(weights, d[a], d[b]);
@@ -85,9 +84,8 @@ double trace_of_square(std::span<const PassGroup> groups, const Gram& gram) {
 }
 
 /// Eq. (4), without what one half of the light that is missing makes of it by chance.
-double variance_of_cross_term(std::span<const PassGroup> groups, std::span<const PictureHalf> missing,
-                              const RelativeWeights& weights) {
-    const std::vector<Picture> d = deviations(groups);
+double variance_of_cross_term(std::span<const PassGroup> groups, std::span<const Picture> d,
+                              std::span<const PictureHalf> missing, const RelativeWeights& weights) {
     double sum = 0.0;
     for (std::size_t g = 0; g < groups.size(); ++g)
         sum += groups[g].passes * product(weights, d[g], missing[0].passes) *
@@ -154,11 +152,9 @@ void check(std::span<const PassGroup> groups, std::size_t pixels) {
     if (!fits) throw std::invalid_argument("groups of passes do not fit a picture");
 }
 
-}  // namespace
-
-SharedNoise shared_noise(std::span<const PassGroup> groups, const RelativeWeights& weights) {
-    check(groups, weights.weight.size());
-    const Gram gram = products(groups, weights);
+SharedNoise noise_of(std::span<const PassGroup> groups, std::span<const Picture> d,
+                     const RelativeWeights& weights) {
+    const Gram gram = products(d, weights);
     const double rest = double(groups.size()) - 1.0;
     double sum = 0.0;
     for (std::size_t g = 0; g < groups.size(); ++g) sum += groups[g].passes * gram[g][g];
@@ -168,6 +164,13 @@ SharedNoise shared_noise(std::span<const PassGroup> groups, const RelativeWeight
     result.freedom = square > 0.0 ? std::clamp(trace * trace / square, 1.0, max_freedom) : max_freedom;
     result.freedom_of_mean = result.freedom * rest;
     return result;
+}
+
+}  // namespace
+
+SharedNoise shared_noise(std::span<const PassGroup> groups, const RelativeWeights& weights) {
+    check(groups, weights.weight.size());
+    return noise_of(groups, deviations(groups), weights);
 }
 
 RelativeWeights weights_of_groups(std::span<const PassGroup> groups, std::span<const Rgb> missing) {
@@ -193,13 +196,14 @@ PictureError group_error(std::span<const PassGroup> groups, std::span<const Pict
                          const RelativeWeights& weights) {
     check(groups, weights.weight.size());
     if (!(weights.noise_norm > 0.0)) return {};
-    const SharedNoise noise = shared_noise(groups, weights);
+    const std::vector<Picture> d = deviations(groups);
+    const SharedNoise noise = noise_of(groups, d, weights);
     if (!(noise.squared > 0.0) || !std::isfinite(noise.squared)) return {};
     double rest = 0.0, known = 0.0, cross = 0.0;
     if (!missing.empty()) {
         const SquaredError light = missing_light(missing, weights);
         rest = light.rest, known = light.variance;
-        cross = variance_of_cross_term(groups, missing, weights);
+        cross = variance_of_cross_term(groups, d, missing, weights);
         if (!std::isfinite(rest + known + cross)) return {};
     }
     const auto [low, high] =

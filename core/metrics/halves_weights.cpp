@@ -6,18 +6,16 @@
 #include <array>
 #include <stdexcept>
 
+#include "core/metrics/neighbourhood.h"
+
 namespace mote::core {
 
 namespace {
 
-constexpr int median_reach = 2;  ///< neighbours within 5 x 5 pixels
-
 double median_around(const std::vector<double>& squares, int x, int y, int width, int height) {
-    std::array<double, (2 * median_reach + 1) * (2 * median_reach + 1)> around{};
+    std::array<double, 5 * 5> around{};
     std::size_t count = 0;
-    for (int v = std::max(0, y - median_reach); v <= std::min(height - 1, y + median_reach); ++v)
-        for (int u = std::max(0, x - median_reach); u <= std::min(width - 1, x + median_reach); ++u)
-            around[count++] = squares[std::size_t(v) * std::size_t(width) + std::size_t(u)];
+    for_each_near(x, y, width, height, [&](std::size_t q) { around[count++] = squares[q]; });
     const auto middle = around.begin() + std::ptrdiff_t(count / 2);
     std::nth_element(around.begin(), middle, around.begin() + std::ptrdiff_t(count));
     return *middle;

@@ -6,24 +6,20 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/metrics/neighbourhood.h"
+
 namespace mote::core {
 
 namespace {
 
-constexpr int pair_reach = 2;               ///< neighbours within 5 x 5 pixels
-constexpr double certain_deviations = 3.0;  ///< by which a pixel is what it is for certain
-
 /// |r|^2 of the neighbours of a pixel alone, their mean.
 double neighbours_square(std::span<const Rgb> picture, int width, int height, int x, int y) {
+    const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
     double sum = 0.0, count = 0.0;
-    for (int v = std::max(0, y - pair_reach); v <= std::min(height - 1, y + pair_reach); ++v)
-        for (int u = std::max(0, x - pair_reach); u <= std::min(width - 1, x + pair_reach); ++u) {
-            if (u == x && v == y) continue;
-            sum += mean_square(picture[std::size_t(v) * std::size_t(width) + std::size_t(u)]);
-            count += 1.0;
-        }
-    return count > 0.0 ? sum / count
-                       : mean_square(picture[std::size_t(y) * std::size_t(width) + std::size_t(x)]);
+    for_each_near(x, y, width, height, [&](std::size_t q) {
+        if (q != p) sum += mean_square(picture[q]), count += 1.0;
+    });
+    return count > 0.0 ? sum / count : mean_square(picture[p]);
 }
 
 }  // namespace
@@ -48,10 +44,8 @@ std::vector<double> weights_of_pair(const PairMean& mean, int width, int height)
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            const double certain = std::sqrt(mean_square(mean.picture[p])) -
-                                   certain_deviations * std::sqrt(mean_of_channels(mean.variance[p]));
-            squares[p] = neighbours_square(mean.picture, width, height, x, y);
-            if (certain > 0.0) squares[p] = std::max(squares[p], certain * certain);
+            squares[p] = std::max(neighbours_square(mean.picture, width, height, x, y),
+                                  certain_square(mean.picture[p], mean.variance[p]));
         }
     return weights_of_squares(squares);
 }

@@ -8,13 +8,14 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/metrics/neighbourhood.h"
+
 namespace mote::core {
 
 namespace {
 
-constexpr int reach = 2;                   ///< neighbours within 5 x 5 pixels
-constexpr double alike = 9.0;              ///< three standard deviations, squared
-constexpr double certain = 3.0;            ///< standard deviations
+constexpr double alike = 9.0;  ///< three standard deviations, squared
+constexpr double certain_deviations = 3.0;
 constexpr double darkest_fraction = 0.01;  ///< (1 / 10)^2 in Eq. (1)
 
 double median_that_is_not_black(const std::vector<double>& squares) {
@@ -50,18 +51,15 @@ Smoothed smoothed(std::span<const Rgb> picture, std::span<const Rgb> variance, i
             glm::dvec3 sum(0.0);
             double count = 0.0;
             const double own = mean_of_channels(variance[p]);
-            for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
-                for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u) {
-                    const std::size_t q = std::size_t(v) * std::size_t(width) + std::size_t(u);
-                    if (q == p || mean_square(glm::dvec3(picture[q]) - glm::dvec3(picture[p])) >
-                                      alike * (own + mean_of_channels(variance[q])))
-                        continue;
-                    sum += glm::dvec3(picture[q]), count += 1.0;
-                }
+            for_each_near(x, y, width, height, [&](std::size_t q) {
+                if (q == p || mean_square(glm::dvec3(picture[q]) - glm::dvec3(picture[p])) >
+                                  alike * (own + mean_of_channels(variance[q])))
+                    return;
+                sum += glm::dvec3(picture[q]), count += 1.0;
+            });
             const glm::dvec3 here(picture[p]), all = (sum + here) / (count + 1.0);
             const glm::dvec3 others = count > 0.0 ? sum / count : here;
-            const double at_least = std::sqrt(mean_square(here)) - certain * std::sqrt(own);
-            s.others[p] = std::max(mean_square(others), at_least > 0.0 ? at_least * at_least : 0.0);
+            s.others[p] = std::max(mean_square(others), certain_square(picture[p], variance[p]));
             s.all[p] = mean_square(all);
         }
     });
@@ -82,6 +80,12 @@ void check_sizes(std::size_t a, std::size_t b) {
 }
 
 }  // namespace
+
+double certain_square(const Rgb& c, const Rgb& variance) {
+    const double least =
+        std::sqrt(mean_square(c)) - certain_deviations * std::sqrt(mean_of_channels(variance));
+    return least > 0.0 ? least * least : 0.0;
+}
 
 std::vector<double> weights_of_squares(const std::vector<double>& squares) {
     return weights_of(squares, squares);

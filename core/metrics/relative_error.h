@@ -21,6 +21,9 @@ namespace mote::core {
 inline double mean_square(const glm::dvec3& c) { return glm::dot(c, c) / 3.0; }
 inline double mean_of_channels(const Rgb& c) { return (double(c.x) + double(c.y) + double(c.z)) / 3.0; }
 
+/// |c|^2 that a pixel has for certain, by three standard deviations.
+double certain_square(const Rgb& c, const Rgb& variance);
+
 /// The weights w of Eq. (1), and the sum that they are relative to.
 struct RelativeWeights {
     std::vector<double> weight;  ///< of every pixel [1 / radiance^2]; 0 everywhere when the picture is black

@@ -37,6 +37,11 @@ std::unique_ptr<PixelFilter> film_filter(const Scene& scene) {
     return make_pixel_filter(film.filter, film.filter_radius, film.filter_stddev);
 }
 
+PassSplit pass_split(const Scene& scene, const Integrator& integrator) {
+    if (!scene.film().interval) return PassSplit::whole;
+    return integrator.plan(scene, find_requirements(scene)).split();
+}
+
 RenderOptions render_options(const Scene& scene, std::uint64_t seed, PassSplit split, CancelToken cancelled) {
     const FilmSettings& film = scene.film();
     SamplerKind sampler = sampler_kind(film.sampler);

@@ -19,6 +19,8 @@ std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
 
 /// Filter of a scene's film. Throws InputError for an unknown one.
 std::unique_ptr<PixelFilter> film_filter(const Scene& scene);
+/// Parts of the passes that show the error of the scene's film, where it is wanted.
+PassSplit pass_split(const Scene& scene, const Integrator& integrator);
 /// Size and sampler of a scene's film with such parts of the passes. Throws InputError for an unknown
 /// sampler.
 RenderOptions render_options(const Scene& scene, std::uint64_t seed, PassSplit split,

@@ -36,8 +36,8 @@ std::string Plan::no_error_because() const {
     return error_unknown.empty() ? noise_unknown : error_unknown;
 }
 
-PassSplit Plan::split(bool wanted) const {
-    if (!wanted || !error_is_known()) return PassSplit::whole;
+PassSplit Plan::split() const {
+    if (!error_is_known()) return PassSplit::whole;
     return error_by_groups ? PassSplit::groups : PassSplit::halves;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/film/film.h"
+#include "core/film/pass_split.h"
 
 namespace mote::core {
 
@@ -44,8 +44,7 @@ struct Plan {
     /// what is missing. "" where they do.
     std::string no_error_because() const;
     bool error_is_known() const { return no_error_because().empty(); }  ///< true where they show it
-    /// Parts that show it; the whole where it is not `wanted`, or not known.
-    PassSplit split(bool wanted) const;
+    PassSplit split() const;  ///< parts that show it; the whole where it is not known
     /// Messages for the user: a warning for each thing that takes very long or that this integrator cannot
     /// compute, and one line with the switches of a topic for what it leaves out by choice.
     std::vector<std::string> warnings() const;

@@ -7,6 +7,7 @@
 #include "core/math/random.h"
 #include "core/metrics/relative_error.h"
 #include "tests/support/catch.h"
+#include "tests/support/coverage.h"
 
 using namespace mote::core;
 
@@ -141,8 +142,6 @@ Coverage coverage(const Method& m, std::uint64_t seeds, bool estimates_missing =
 }
 
 constexpr std::uint64_t seeds = 400;
-/// Three standard deviations of a share of so many seeds.
-const double within = 3.0 * std::sqrt(0.95 * 0.05 / double(seeds));
 
 }  // namespace
 
@@ -156,8 +155,7 @@ TEST_CASE("The interval of a picture whose pixels share noise contains its error
     for (const Method& method : methods) {
         CAPTURE(&method - methods);
         const Coverage c = coverage(method, seeds);
-        CHECK(c.contained > 0.95 - within);
-        CHECK(c.contained < 0.95 + within);
+        mote::tests::check_coverage(c.contained, seeds);
     }
 }
 

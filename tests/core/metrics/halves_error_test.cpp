@@ -7,6 +7,7 @@
 #include "core/math/random.h"
 #include "core/render/stop_clock.h"
 #include "tests/support/catch.h"
+#include "tests/support/coverage.h"
 
 using namespace mote::core;
 
@@ -174,9 +175,7 @@ Broken broken_limits(std::uint64_t seeds) {
     return broken;
 }
 
-/// 95 % +- 3 standard deviations of a share of so many seeds.
 constexpr std::uint64_t seeds = 600;
-const double within = 3.0 * std::sqrt(0.95 * 0.05 / double(seeds));
 
 }  // namespace
 
@@ -187,8 +186,7 @@ TEST_CASE("The interval of a filtered picture contains its error in 95 of 100 se
     for (const Filter& filter : filters) {
         CAPTURE(&filter - filters);
         const Coverage c = coverage(filter, seeds);
-        CHECK(c.contained > 0.95 - within);
-        CHECK(c.contained < 0.95 + within);
+        mote::tests::check_coverage(c.contained, seeds);
         CHECK(std::fabs(c.surprise) < 4.0);
     }
 }

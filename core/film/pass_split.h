@@ -1,0 +1,26 @@
+// Independent parts of the passes of a film, which show its error.
+#pragma once
+
+#include <cstdint>
+
+#include "core/film/pass_image.h"
+
+namespace mote::core {
+
+/// Parts of the passes that a film has sums over: none, those of even and of odd index, or eight groups
+/// (pass_group_count).
+enum class PassSplit : std::uint8_t { whole, halves, groups };
+
+/// True where the film keeps sums over the passes of odd index of a layer whose squares it keeps.
+inline bool splits_layer(PassSplit split, const Layer& layer) {
+    switch (split) {
+        case PassSplit::halves:
+            return !layer.auxiliary;
+        case PassSplit::groups:
+            return layer.missing;
+        default:
+            return false;
+    }
+}
+
+}  // namespace mote::core
