@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
+import plotting
 from claims import Claims
 from measure import series_error
 from origin import tables_of
-import plotting
 from renders import approximate, compensation, main, mean_and_error, write_csv
 
 SCENE = Path(__file__).with_suffix(".xml")
