@@ -25,7 +25,7 @@ packages=(
   catch2 libbenchmark-dev                             # tests and benchmarks
   python3-numpy python3-matplotlib                    # the figures of experiments/figures
   python3-venv python3-dev                            # the Python module (tools/python_packages.sh)
-  dpkg-dev                                            # the Debian packages (cpack -G DEB) and their test
+  dpkg-dev file                                       # the Debian packages (cpack -G DEB) and their test
   glmark2-data                                        # a real bunny and horse
   doxygen                                             # the reference of the library (19 MB; left out where missing)
 )

@@ -95,13 +95,13 @@ def check(beauty, multiple, few):
 
 def draw(beauty, multiple, few, vpls, clean, path):
     canvas = Canvas(1280, 2 * TITLE + 400 + 368 + 64)
-    left, right, below = 62, 702, 2 * TITLE + 440
-    room = canvas.panel(left, TITLE, 570, 361)
+    left, right, below = 66, 715, 2 * TITLE + 440
+    room = canvas.panel(left, TITLE, 545, 341)
     show(room, clean, 0.8 / np.quantile(luminance(clean), 0.985), "all light, by mote_layers, filtered, and the line")
     height, width = clean.shape[:2]
     high = ROWS * width / beauty["reference"].shape[1]  # of the line, in pixels of the clean picture
     room.axhspan((height - high) / 2, (height + high) / 2, facecolor="none", edgecolor="white", linewidth=1)
-    panels = [canvas.panel(right, TITLE, 570, 361), canvas.panel(left, below, 570, 340), canvas.panel(right, below, 570, 340)]
+    panels = [canvas.panel(right, TITLE, 545, 341), canvas.panel(left, below, 545, 340), canvas.panel(right, below, 545, 340)]
     columns = lambda lines: (np.arange(lines.shape[1]) + 0.5) / lines.shape[1]
     worst = np.argmax(peak(few, "unbounded"))
     for name, color in (("unbounded", plotting.ORANGE_RED), ("compensated", "black"), ("bounded", plotting.BLUE)):
@@ -116,7 +116,7 @@ def draw(beauty, multiple, few, vpls, clean, path):
         axes.set_ylim(bottom=0)
     for axes in panels:
         axes.legend()
-        axes.set(xlim=(0, 1), xlabel="pixel along the line / all of it", ylabel="luminance [W/(m² sr)]")
+        axes.set(xlim=(0, 1), xlabel="pixels along the line / all of them", ylabel="luminance [W/(m² sr)]")
         letter(axes)
     canvas.save(path)
 

@@ -9,7 +9,7 @@ import matplotlib
 matplotlib.use("Agg")
 import layout
 import matplotlib.pyplot as plt
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
 
 WIDTH = 960  # pixels
 DPI = 100

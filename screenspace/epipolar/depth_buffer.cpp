@@ -1,5 +1,6 @@
 #include "screenspace/epipolar/depth_buffer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 

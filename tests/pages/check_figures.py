@@ -7,9 +7,6 @@ plotted (NAME.figure.json, experiments/figures/layout.py):
 - labels of two lines do not lie on each other;
 - a signed difference (id "difference") has a colour bar (id "colour bar") whose label names a measure.
 
-A PNG without such a file is named, with a digest of its pixels and the reason, in OLD: once it is plotted anew it has to leave the list,
-which is no longer than MAX_OLD.
-
 Widths of letters are those of DejaVu Sans, the widest of the fonts that browsers choose here.
 
     tests/pages/check_figures.py ROOT
@@ -31,7 +28,6 @@ MEASURES = ("relative RMSE", "relMSE", "bias", "difference", "seconds", "time", 
             "rays", "points", "pixels", "texels", "angle", "items", "layers", "levels", "samples", "links", "splats", "optical depth", "light lost", "noise")
 WIDE, NARROW = 0.636, {**dict.fromkeys("ijl.,:;'|!", 0.33), **dict.fromkeys("frt-()[] /", 0.40), **dict.fromkeys("mwMW%", 0.95)}
 NO_BAR = "a difference has no colour bar that names its measure"
-OLD, MAX_OLD = "tests/pages/figures_without_labels.txt", 2
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -158,26 +154,13 @@ def png_faults(path, beside):
         yield NO_BAR
 
 
-def old(root):
-    """By path, (digest, reason) of the pictures that need no file beside them."""
-    lines = (root / OLD).read_text(encoding="utf-8").splitlines() if (root / OLD).is_file() else []
-    return {path: (digest, reason) for path, digest, reason in (line.split(maxsplit=2) for line in lines if line and line[0] != "#")}
-
-
 def check_pngs(root):
-    excused = old(root)
-    if len(excused) > MAX_OLD:
-        yield f"{OLD}: {len(excused)} pictures, and it may only shrink from {MAX_OLD}"
     for path in sorted((root / "docs/gallery").rglob("*.png")):
         name, beside = str(path.relative_to(root)), path.with_suffix(".figure.json")
-        digest, _ = excused.pop(name, (None, None))
         if beside.is_file():
             yield from (f"{name}: {fault}" for fault in dict.fromkeys(png_faults(path, beside)))
-            if digest:
-                yield f"{name}: has {beside.name}, and {OLD} still excuses it"
-        elif digest != pixels(path):
-            yield f"{name}: no {beside.name} says what it shows" + (f", and {OLD} excuses another picture" if digest else "")
-    yield from (f"{OLD}: there is no {name}" for name in excused)
+        else:
+            yield f"{name}: no {beside.name} says what it shows"
 
 
 def check(root):
