@@ -28,9 +28,9 @@ Rgb TriangleMesh::attribute_mean(std::string_view name) const {
     if (!found) return Rgb(0.0f);
     // Linear over a triangle: the value at its centre is its mean.
     Vec3d sum(0.0);
+    const Distribution1D& shares = areas();
     for (std::uint32_t i = 0; i < built_->data.triangles.size(); ++i)
-        sum += double(built_->area_distribution.probability(i)) *
-               Vec3d(attribute_at(*found, i, Vec2(1.0f / 3.0f)));
+        sum += double(shares.probability(i)) * Vec3d(attribute_at(*found, i, Vec2(1.0f / 3.0f)));
     return Rgb(sum);
 }
 

@@ -1,7 +1,11 @@
 // Validity of meshes: refuse what cannot be traced, drop what has no area, find out what is closed.
 #include "core/geometry/mesh_checks.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <unordered_map>
 
@@ -71,7 +75,19 @@ bool has_area(const MeshData& data) {
                        [&](const auto& triangle) { return !degenerate(data, triangle); });
 }
 
-std::size_t drop_degenerate_triangles(MeshData& data) {
+std::size_t count_degenerate_triangles(const MeshData& data) {
+    using Range = tbb::blocked_range<std::size_t>;
+    return tbb::parallel_reduce(
+        Range(0, data.triangles.size()), std::size_t(0),
+        [&](const Range& range, std::size_t count) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i)
+                count += degenerate(data, data.triangles[i]);
+            return count;
+        },
+        std::plus<>());
+}
+
+void drop_degenerate_triangles(MeshData& data) {
     const std::size_t all = data.triangles.size();
     std::size_t kept = 0;
     for (std::size_t i = 0; i < all; ++i) {
@@ -84,7 +100,6 @@ std::size_t drop_degenerate_triangles(MeshData& data) {
     data.triangles.resize(kept);
     for (MeshAttribute& a : data.attributes)
         if (a.of_faces) a.values.resize(kept);
-    return all - kept;
 }
 
 bool is_closed(const MeshData& data) {

@@ -15,11 +15,13 @@ inline constexpr float largest_coordinate = 1e18f;
 /// coordinates do not fit the positions.
 void check_mesh(const MeshData& data, const SourceLocation& where);
 
-/// True when at least one triangle has an area (see drop_degenerate_triangles). Indices must be in range.
+/// True when at least one triangle has an area (see count_degenerate_triangles). Indices must be in range.
 bool has_area(const MeshData& data);
 
-/// Removes triangles whose corners are collinear as far as double precision shows. Returns how many.
-std::size_t drop_degenerate_triangles(MeshData& data);
+/// Triangles whose corners are collinear as far as double precision shows.
+std::size_t count_degenerate_triangles(const MeshData& data);
+/// Removes those.
+void drop_degenerate_triangles(MeshData& data);
 
 /// True when, after joining vertices at equal positions, every edge is passed as often in one direction as in
 /// the other: the surface has no border and its triangles agree on which side is out.

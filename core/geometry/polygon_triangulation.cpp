@@ -55,8 +55,12 @@ void triangulate_polygon(std::span<const std::uint32_t> polygon, std::span<const
                          std::vector<std::array<std::uint32_t, 3>>& triangles) {
     const auto n = std::uint32_t(polygon.size());
     if (n < 3) return;
+    if (n == 3) {
+        triangles.push_back({polygon[0], polygon[1], polygon[2]});
+        return;
+    }
     std::vector<std::uint32_t> left;  // corners not yet cut off
-    if (n > 3 && n <= 256) {
+    if (n <= 256) {
         const std::vector<Vec2d> points = project(polygon, positions);
         if (!convex(points)) {
             for (std::uint32_t i = 0; i < n; ++i) left.push_back(i);
@@ -76,7 +80,7 @@ void triangulate_polygon(std::span<const std::uint32_t> polygon, std::span<const
     }
     if (left.empty())
         for (std::uint32_t i = 0; i < n; ++i) left.push_back(i);
-    // A triangle, a convex polygon, or one that crosses itself so that no ear is left.
+    // A convex polygon, or one that crosses itself so that no ear is left.
     for (std::size_t i = 2; i < left.size(); ++i)
         triangles.push_back({polygon[left[0]], polygon[left[i - 1]], polygon[left[i]]});
 }

@@ -1,6 +1,8 @@
 // Triangle meshes: checks at construction, hits from barycentric coordinates, sampling by area.
 #include "core/geometry/triangle_mesh.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 #include "core/geometry/mesh_checks.h"
@@ -38,35 +40,49 @@ TriangleMesh::TriangleMesh(MeshData given) {
     const auto built = std::make_shared<Built>();
     MeshData& data = built->data = std::move(given);
     check_mesh(data, {});
-    built->closed = is_closed(data);  // before dropping: a needle may hold a seam together
-    if (const std::size_t dropped = drop_degenerate_triangles(data); dropped > 0)
-        notes.push_back(std::to_string(dropped) + " degenerate triangle" + (dropped == 1 ? "" : "s") +
+    if (const std::size_t degenerate = count_degenerate_triangles(data); degenerate > 0) {
+        built->closed.get([&] { return is_closed(data); });  // now: a needle may hold a seam together
+        drop_degenerate_triangles(data);
+        notes.push_back(std::to_string(degenerate) + " degenerate triangle" + (degenerate == 1 ? "" : "s") +
                         " dropped");
+    }
     if (data.triangles.empty()) throw InputError("the mesh has no triangle with an area");
 
     // Embree reads 16 bytes for every vertex, so four bytes behind the last one must be ours.
     data.positions.reserve(data.positions.size() + 1);
 
-    built->triangles.reserve(data.triangles.size());
-    for (const auto& [a, b, c] : data.triangles)
-        built->triangles.push_back(Triangle({data.positions[a], data.positions[b], data.positions[c]}));
-    std::vector<float> areas;
-    areas.reserve(data.triangles.size());
-    double sum = 0.0, largest = 0.0;
-    for (std::uint32_t i = 0; i < data.triangles.size(); ++i) {
-        const double area = area_of(built->triangles[i].corners);
-        sum += area, largest = std::max(largest, area);
-        for (const std::uint32_t vertex : data.triangles[i]) built->bounds.extend(data.positions[vertex]);
+    built->triangles.resize(data.triangles.size());
+    tbb::parallel_for(std::size_t(0), data.triangles.size(), [&](std::size_t i) {
+        const auto& [a, b, c] = data.triangles[i];
+        built->triangles[i] = Triangle({data.positions[a], data.positions[b], data.positions[c]});
+    });
+    double sum = 0.0;  // one after the other: the same bits on any number of threads
+    for (const Triangle& triangle : built->triangles) {
+        sum += area_of(triangle.corners);
+        for (const Vec3& corner : triangle.corners) built->bounds.extend(corner);
     }
     built->area = float(sum);
     if (!(built->area > std::numeric_limits<float>::min()) || !std::isfinite(built->area))
         throw InputError("the area of the mesh is out of range");
-    // Relative to the largest, so that tiny triangles do not underflow.
-    for (std::uint32_t i = 0; i < data.triangles.size(); ++i)
-        areas.push_back(float(area_of(built->triangles[i].corners) / largest));
-    built->area_distribution = Distribution1D(areas);
     built->halves = find_halves(built->triangles);
     built_ = built;
+}
+
+bool TriangleMesh::closed() const {
+    return built_->closed.get([&] { return is_closed(built_->data); });
+}
+
+/// Relative to the largest, so that tiny triangles do not underflow.
+const Distribution1D& TriangleMesh::areas() const {
+    return built_->areas.get([&triangles = built_->triangles] {
+        double largest = 0.0;
+        for (const Triangle& triangle : triangles) largest = std::max(largest, area_of(triangle.corners));
+        std::vector<float> areas;
+        areas.reserve(triangles.size());
+        for (const Triangle& triangle : triangles)
+            areas.push_back(float(area_of(triangle.corners) / largest));
+        return Distribution1D(areas);
+    });
 }
 
 void TriangleMesh::fill_hit(std::uint32_t primitive, float u, float v, SurfaceHit& hit) const {
@@ -165,7 +181,7 @@ std::optional<TriangleMesh::Halves> TriangleMesh::find_halves(std::span<const Tr
 /// A point of the unit square beyond its diagonal lies in the second triangle.
 TriangleMesh::Point TriangleMesh::sample_point(const Vec2& u) const {
     if (!built_->halves) {
-        const auto chosen = built_->area_distribution.sample_discrete(u.x);
+        const auto chosen = areas().sample_discrete(u.x);
         return {std::uint32_t(chosen.index), square_to_triangle({chosen.remapped, u.y})};
     }
     const auto& [first, second, turned] = *built_->halves;

@@ -8,6 +8,7 @@
 #include "core/geometry/shape.h"
 #include "core/math/distribution.h"
 #include "core/math/transform.h"
+#include "core/objects/found_once.h"
 
 namespace mote::core {
 
@@ -64,7 +65,7 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     float support(const Vec3& direction) const override;
     float area() const override { return built_->area; }
     ShapeSample sample_area(const Vec2& u) const override;
-    bool closed() const override { return built_->closed; }
+    bool closed() const override;  ///< found when first asked for
     std::size_t primitive_count() const override { return built_->data.triangles.size(); }
     const SurfaceAttributes* attributes() const override {
         return built_->data.attributes.empty() ? nullptr : this;
@@ -74,7 +75,8 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     struct alignas(64) Triangle {
         std::array<Vec3, 3> corners;  ///< [m]
         Vec3 normal;                  ///< geometric, unit
-        float plane_error;            ///< of Embree's test on which side a ray starts, along the normal [m]
+        float plane_error = 0.0f;     ///< of Embree's test on which side a ray starts, along the normal [m]
+        Triangle() = default;
         /// From its corners, in order [m].
         explicit Triangle(const std::array<Vec3, 3>& corners);
         Vec3 point(float u, float v) const {
@@ -120,11 +122,12 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
         MeshData data;
         Bounds3 bounds;
         std::vector<Triangle> triangles;
-        std::optional<Halves> halves;      ///< of a parallelogram, which needs no table of areas
-        Distribution1D area_distribution;  ///< areas relative to the largest
+        std::optional<Halves> halves;  ///< of a parallelogram, which needs no table of areas
         float area = 0.0f;
-        bool closed = false;
+        FoundOnce<bool> closed;           ///< asked for where a medium begins or ends
+        FoundOnce<Distribution1D> areas;  ///< areas relative to the largest, for samples of points
     };
+    const Distribution1D& areas() const;
     std::shared_ptr<const Built> built_;
 };
 

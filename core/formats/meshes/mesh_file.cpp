@@ -21,15 +21,15 @@ std::string format_of(const std::string& path) {
 MeshFile read_mesh_file(const std::string& format, const std::string& path, bool flip_v,
                         std::int64_t shape_index) {
     if (format != "obj" && format != "ply" && format != "serialized") return read_with_assimp(path, flip_v);
-    std::string text;
+    std::vector<std::byte> bytes;
     try {
-        const std::vector<std::byte> bytes = read_whole_file(path);
-        text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        bytes = read_whole_file(path);
     } catch (const InputError& error) {
         throw InputError(error.what(), {path, 0});
     }
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (format == "serialized") return read_serialized(text, path, shape_index);
-    return format == "obj" ? read_obj(std::move(text), path, flip_v) : read_ply(text, path, flip_v);
+    return format == "obj" ? read_obj(std::string(text), path, flip_v) : read_ply(text, path, flip_v);
 }
 
 std::string counted(std::size_t n, const char* singular, const char* plural, const char* what) {

@@ -165,6 +165,9 @@ class PlyReader {
         const auto attributes =
             find_attributes(element, "vertex_", [&](std::size_t i) { return slot[i] == slots; });
         std::vector<double> row(element.properties.size());
+        file_.data.positions.reserve(element.count);
+        if (has_normals_) file_.data.normals.reserve(element.count);
+        if (has_uvs_) file_.data.uvs.reserve(element.count);
         for (std::uint64_t i = 0; i < element.count; ++i) {
             double values[slots + 1] = {};
             read_row(element, row);
@@ -182,6 +185,9 @@ class PlyReader {
         if (!corner_counts_.empty()) fail("two face elements in one PLY file");
         const auto attributes = find_attributes(element, "face_", [](std::size_t) { return true; });
         std::vector<double> row(element.properties.size());
+        corner_counts_.reserve(element.count);
+        corners_.reserve(
+            std::min(3 * element.count, remaining() / sizeof(std::uint32_t)));  // mostly triangles
         for (std::uint64_t i = 0; i < element.count; ++i) {
             for (std::size_t k = 0; k < row.size(); ++k) {
                 const Property& p = element.properties[k];
@@ -245,6 +251,7 @@ class PlyReader {
     void triangulate() {
         const std::span<const std::uint32_t> all(corners_);
         std::size_t begin = 0;
+        file_.data.triangles.reserve(corner_counts_.size());
         std::vector<MeshAttribute> of_triangles;
         for (const MeshAttribute& a : face_attributes_) of_triangles.push_back({a.name, true, {}});
         for (std::size_t face = 0; face < corner_counts_.size(); ++face) {
