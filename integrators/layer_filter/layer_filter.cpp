@@ -30,6 +30,19 @@ LayerOfPasses of_passes(Film& film, std::size_t layer, std::uint32_t fewest) {
             known ? film.layer_variance_of_mean(layer) : std::vector<Rgb>(film.pixels(), Rgb(infinity))};
 }
 
+/// Of the light of all layers, the fraction in each: for pixels where no path has met any.
+std::vector<Vec3d> fractions(const std::vector<LayerOfPasses>& layers) {
+    std::vector<Vec3d> light(layers.size(), Vec3d(0.0));
+    Vec3d all(0.0);
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+        for (const Rgb& mean : layers[l].mean) light[l] += Vec3d(mean);
+        all += light[l];
+    }
+    for (Vec3d& of_layer : light)
+        for (int c = 0; c < 3; ++c) of_layer[c] = all[c] > 0.0 ? of_layer[c] / all[c] : 0.0;
+    return light;
+}
+
 /// The filtered sum of layers, of which each keeps its fraction of a pixel.
 std::vector<std::vector<Rgb>> filtered_sum(screenspace::ViewFilter& filter, std::vector<LayerOfPasses> layers,
                                            screenspace::LayerKind kind, screenspace::FilterQuality quality,
@@ -39,12 +52,14 @@ std::vector<std::vector<Rgb>> filtered_sum(screenspace::ViewFilter& filter, std:
         for (std::size_t p = 0; p < sum.size(); ++p)
             sum[p] += layer.mean[p], variance[p] += layer.variance[p];
     const std::vector<Rgb> shown = filter.filtered({sum, variance, kind, quality}, cancelled).mean;
+    const std::vector<Vec3d> usual = fractions(layers);
     std::vector<std::vector<Rgb>> result;
     for (LayerOfPasses& layer : layers) {
+        const Rgb of_picture(usual[result.size()]);
         for (std::size_t p = 0; p < sum.size(); ++p)
             for (int c = 0; c < 3; ++c) {
-                const float of_none = result.empty() ? shown[p][c] : 0.0f;
-                layer.mean[p][c] = sum[p][c] > 0.0f ? shown[p][c] * (layer.mean[p][c] / sum[p][c]) : of_none;
+                const float here = sum[p][c] > 0.0f ? layer.mean[p][c] / sum[p][c] : of_picture[c];
+                layer.mean[p][c] = shown[p][c] * here;
             }
         result.push_back(std::move(layer.mean));
     }

@@ -201,6 +201,33 @@ TEST_CASE("A preview shows the filtered sum of the layers of a kind", "[layer_fi
     CHECK(film.mean(layers[1]) == after);
 }
 
+// The denoiser brings light to pixels where no path has met any; a layer that is black stays so.
+TEST_CASE("Light of pixels without any is shared out as that of the picture is", "[layer_filter]") {
+    const auto scene = scene_from(box(grey, coloured_fog), 32);
+    Film film = rendered(*scene, 1, 1);
+    const std::array names = {"emission", "direct", "indirect"};
+    std::vector<LayerFilter::Choice> choices;
+    std::array<std::vector<Rgb>, 3> before;
+    Vec3d light[3] = {}, all(0.0);
+    for (std::size_t l = 0; l < names.size(); ++l) {
+        choices.push_back({layer_called(film, names[l]), LayerKind::surface});
+        before[l] = film.mean(choices[l].layer);
+        for (const Rgb& value : before[l]) light[l] += Vec3d(value), all += Vec3d(value);
+    }
+    const Environment stand_in("MOTE_OIDN", MOTE_BINARY_DIR "/stand_ins"), more("MOTE_STAND_IN_LIGHT", "1");
+    LayerFilter(*scene, options_of(*scene), FeatureSettings(), std::make_shared<const OidnLibrary>(), choices)
+        .apply_for_preview(film);
+    int dark = 0;
+    for (std::size_t p = 0; p < film.pixels(); ++p) {
+        if (max_component(before[0][p] + before[1][p] + before[2][p]) > 0.0f) continue;
+        ++dark;
+        for (std::size_t l = 0; l < names.size(); ++l)
+            for (int c = 0; c < 3; ++c)
+                CHECK(film.mean(choices[l].layer)[p][c] == Approx(light[l][c] / all[c]).margin(1e-6));
+    }
+    CHECK(dark > 10);
+}
+
 TEST_CASE("After little work layers of a kind are denoised as one, and one by one after much",
           "[layer_filter]") {
     const auto scene = scene_from(box(grey, coloured_fog), 16);

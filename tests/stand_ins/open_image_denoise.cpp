@@ -96,6 +96,8 @@ void oidnExecuteFilter(void* filter) {
     if (!f.device->error.empty()) return;
     if (const char* log = std::getenv("MOTE_STAND_IN_LOG"); log && input == "color")
         std::ofstream(log, std::ios::app) << "quality " << f.quality << '\n';
+    if (const char* light = std::getenv("MOTE_STAND_IN_LIGHT"); light && input == "color")
+        more += std::strtof(light, nullptr);
     const Image &from = f.images.at(input), &to = f.images.at("output");
     for (std::size_t i = 0; i < to.numbers(); ++i) to.pixels[i] = factor * from.pixels[i] + more;
 }
