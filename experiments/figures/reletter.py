@@ -211,18 +211,6 @@ def engelhardt_07_octahedral():
     laid_out(sheet, 4, [f"{what}, {blur}" for what in ("summed areas", "round lobes") for blur in blurs], more=(50, 0))
 
 
-def engelhardt_08_01_bounce():
-    sheet = Sheet("engelhardt_08_01_bounce", (26, (10, 532, 1054, 1576, 2098), 512, 512), (574, (10, 340, 670, 1000, 1330), 320, 200))
-    panels, texts, blank = [], [], lambda panel: np.full_like(panel, 255)
-    for k, scene in enumerate(("cornell box", "bunny room")):
-        every, few, truth, *apart = sheet.panels[5 * k:5 * k + 5]
-        panels += [truth, every, few, blank(truth), *(Difference(p, 3) for p in apart)]
-        texts += [f"{scene}: path"] + [f"{n}: {sheet.row(scene=scene, receivers=n)['error']:.1%}" for n in ("every pixel", "1/16 of the pixels")] + \
-                 ["", "difference", "difference"]
-    sheet.panels = panels
-    laid_out(sheet, 3, texts)
-
-
 def engelhardt_08_13_raycast():
     sheet = Sheet("engelhardt_08_13_raycast", (26, (10, 532, 1054), 512, 320), (382, (532, 1054), 512, 320))
     sheet.panels = [*sheet.panels[:3], np.full_like(sheet.panels[0], 255), *(Difference(p, 3) for p in sheet.panels[3:])]
@@ -359,7 +347,7 @@ def engelhardt_10_12_anisotropic():
           3 * ["what two steps bring back, x4, 3 x 3 pixels"])
 
 
-FIGURES = [blender_cycles, engelhardt_07_octahedral, engelhardt_08_01_bounce, engelhardt_08_13_raycast, engelhardt_10_05_locally_homogeneous, engelhardt_10_10_room,
+FIGURES = [blender_cycles, engelhardt_07_octahedral, engelhardt_08_13_raycast, engelhardt_10_05_locally_homogeneous, engelhardt_10_10_room,
            hidden_surfaces, engelhardt_08_06_multibounce, engelhardt_08_10_upsampling, engelhardt_09_01_samples, engelhardt_09_10_against_subsampling,
            engelhardt_09_11_lines, engelhardt_10_07_strategies, engelhardt_10_12_anisotropic, engelhardt_10_13_complex, engelhardt_11_03_hierarchy,
            engelhardt_11_05_ground_truth, hermes_07_interleaved, hermes_08_glossy, hermes_09_path_tracing, hermes_11_direct_apart, smoke_animation,
