@@ -13,7 +13,8 @@ using Tone = float (*)(float);
 inline float linear_tone(float radiance) { return radiance; }
 
 /// Nearly linear in the dark; highlights are compressed, so that they keep their shape (Hable 2010). 0.18
-/// becomes 0.13, 1 becomes 0.49, and white is reached at 5.6.
+/// becomes 0.13, 1 becomes 0.49, and white is reached at 5.6. Infinity becomes NaN, for a
+/// picture file shows what is not finite.
 inline float filmic_tone(float radiance) {
     const auto curve = [](float x) {
         return (x * (0.15f * x + 0.05f) + 0.004f) / (x * (0.15f * x + 0.5f) + 0.06f) - 0.02f / 0.3f;

@@ -46,6 +46,16 @@ TEST_CASE("a filmic curve keeps the shape of highlights that are white without i
     CHECK(converted(folder, {"--tone", "filmic", "--exposure", "1"})[3] == filmic[4]);
 }
 
+TEST_CASE("what is not finite is shown as such under every curve", "[command][tone]") {
+    const TemporaryFolder folder;
+    mote::core::ImageChannels image;
+    image.width = 2, image.height = 1;
+    image.add_rgb("", std::vector<Rgb>{Rgb(INFINITY), Rgb(NAN)});
+    mote::core::write_exr(folder.file("row.exr"), image);
+    for (const char* tone : {"linear", "filmic"})
+        CHECK(converted(folder, {"--tone", tone}) == std::vector<int>(2, 0));  // magenta has no green
+}
+
 TEST_CASE("--tone is for pictures that are shown", "[command][tone][refusal]") {
     const TemporaryFolder folder;
     const RunResult exr = run_mote(folder, {"convert", "a.exr", "b.exr", "--tone", "filmic"});
