@@ -5,7 +5,7 @@ Five scenes: a sculpture full of holes, the crown of a tree and a window with ba
 and smoke from a VDB file. In each, one pass with all samples at the same places and march steps as in the picture that
 marches every pixel, so that the difference is the error of interpolation alone. Sub-sampling interpolates the same
 quantity with the same test of depth. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing.
-A full run takes about 6 minutes on two cores, --quick 50 s.
+A full run takes about 2 minutes on two cores, --quick 50 s.
 
     experiments/figures/engelhardt_09_10_against_subsampling.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """

@@ -268,14 +268,6 @@ def engelhardt_08_10_upsampling():
           [f"{r['texels_a_side']:.0f} x {r['texels_a_side']:.0f} texels: relative RMSE {r['error']:.1%}" for r in rows[6:]])
 
 
-def engelhardt_09_10_against_subsampling():
-    sheet = Sheet("engelhardt_09_10_against_subsampling", *((y, (11, 308, 606, 903), 286, high) for y, high in
-                                                            ((26, 160), (214, 160), (401, 160), (589, 160), (778, 157))))
-    names = {"full": "every pixel", "lines": "epipolar lines", "grid": "grid, as many", "grid x 4": "grid, 4 times"}
-    laid_out(sheet, 4, [f"{names[r['sampling']]}: {r['share']:.1%} of rays\n" +
-                     (r["scene"] if r["sampling"] == "full" else f"relative RMSE {r['relative_mse'] ** 0.5:.1%}") for r in sheet.rows()])
-
-
 def engelhardt_09_01_samples():
     sheet = Sheet("engelhardt_09_01_samples", (30, (15, 639), 547, 307), (362, (15,), 547, 307))
     rows = sheet.rows()
@@ -348,7 +340,7 @@ def engelhardt_10_12_anisotropic():
 
 
 FIGURES = [blender_cycles, engelhardt_07_octahedral, engelhardt_08_13_raycast, engelhardt_10_05_locally_homogeneous, engelhardt_10_10_room,
-           hidden_surfaces, engelhardt_08_06_multibounce, engelhardt_08_10_upsampling, engelhardt_09_01_samples, engelhardt_09_10_against_subsampling,
+           hidden_surfaces, engelhardt_08_06_multibounce, engelhardt_08_10_upsampling, engelhardt_09_01_samples,
            engelhardt_09_11_lines, engelhardt_10_07_strategies, engelhardt_10_12_anisotropic, engelhardt_10_13_complex, engelhardt_11_03_hierarchy,
            engelhardt_11_05_ground_truth, hermes_07_interleaved, hermes_08_glossy, hermes_09_path_tracing, hermes_11_direct_apart, smoke_animation,
            sun_05_cornell, sun_05_denoised, sun_05_equal_time, tokuyoshi_04_mis, tokuyoshi_06_environment, tokuyoshi_07_two_bounce,
