@@ -297,6 +297,15 @@ TEST_CASE("-D reaches objects that are nested in each other", "[command]") {
                    "no element 'medium'"));
 }
 
+TEST_CASE("Peak memory is that of the command, not of the program that starts it", "[command]") {
+    const SceneFolder folder;
+    const std::vector<char> held(1u << 30, 1);
+    REQUIRE(run_mote(folder, {"render", "scene.xml", "--passes", "1", "--stats", "s.json"}).exit_code == 0);
+    const double peak = nlohmann::json::parse(read_file(folder.file("s.json"))).at("peak_memory_bytes");
+    CHECK(peak > 1e6);
+    CHECK(peak < double(held.size()));
+}
+
 TEST_CASE("The preview adapts, --exposure fixes it, and the PNG says which", "[command][exposure]") {
     const SceneFolder folder;
     const RunResult r = run_mote(folder, {"render", "scene.xml", "--passes", "2"});
