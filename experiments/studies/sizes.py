@@ -3,11 +3,11 @@
 
 Renders four passes of 640 x 400 pixels of a rippled terrain (unique triangles, read from one PLY file), of such terrains placed many
 times (instances), of point lights over it, and of a shell of fog that fills a sparse grid. Prints and writes for each size the
-seconds of loading and of a pass, and the peak of memory, and of each row of sizes the exponents: the slope of the logarithm between
-the two largest sizes. `read` is the time of reading the file alone, bytes for bytes. Exit code 1: a pass takes longer than it
+seconds of loading and of a pass, and the peak of memory, and of each row of sizes the exponents: the slope of the logarithm over
+the last factor of ten or more. `read` is the time of reading the file alone, bytes for bytes. Exit code 1: a pass takes longer than it
 would if it grew with the logarithm of the size (twice that, for noise), or an exponent of loading or of memory exceeds 1.1.
 
-    experiments/studies/sizes.py [--quick] [--csv FILE] [--bin FOLDER]
+    experiments/studies/sizes.py [--quick] [--output FOLDER] [--bin FOLDER]
 """
 import argparse
 import csv
@@ -22,6 +22,10 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "experiments/figures"))
+import plotting
+from origin import Origin
+
 VIEW = """<scene version="3.0.0"><integrator type="{integrator}"/><sensor type="perspective"><float name="fov" value="50"/>
 <transform name="to_world"><lookat origin="0, 0.9, 1.9" target="0, 0, 0" up="0, 1, 0"/></transform>
 <film type="hdrfilm"><integer name="width" value="640"/><integer name="height" value="400"/></film></sensor>{things}</scene>"""
@@ -102,48 +106,79 @@ def seconds_to_read(path):
     return time.perf_counter() - begin
 
 
-def measure(args, make, size, folder):
+def measure(args, origin, make, size, folder):
     count, file, integrator, things = make(args, size, folder)
     (folder / "scene.xml").write_text(VIEW.format(integrator=integrator, things=things))
     subprocess.run([args.bin / "mote", "render", folder / "scene.xml", "--passes", "4", "--quiet", "-o", folder / "a.exr",
                     "--stats", folder / "a.json"], check=True)
     stats = json.loads((folder / "a.json").read_text())
+    origin.programs.add(stats["git_hash"])
     return {"size": count, "read_seconds": seconds_to_read(file), "load_seconds": stats["seconds"]["load"],
             "pass_seconds": (stats["seconds"]["render"] - stats["seconds"].get("previews", 0.0)) / 4, "memory_bytes": stats["peak_memory_bytes"]}
 
 
 def exponent(rows, key):
-    a, b = rows[-2:]
+    b = rows[-1]
+    a = max((r for r in rows if r["size"] <= 0.11 * b["size"]), key=lambda r: r["size"], default=rows[0])
     return math.log(b[key] / a[key]) / math.log(b["size"] / a["size"])
+
+
+def plot(of_kinds, path):
+    made, axes = plotting.figure(columns=2, height=420)
+    for ax, key, measured in zip(axes, ("load_seconds", "pass_seconds"), ("seconds of loading", "seconds of a pass")):
+        ends = []
+        for colour, (kind, rows) in zip((plotting.BLUE, plotting.ORANGE_RED, plotting.GREEN, plotting.BLACK), of_kinds.items()):
+            x, y = [r["size"] for r in rows], [r[key] for r in rows]
+            ax.plot(x, y, "o-", color=colour)
+            ends.append((kind.split(" ")[0] if kind != "point lights" else "lights", x[-1], y[-1], colour))
+        plotting.log_axes(ax, "triangles, instances, lights, voxels", measured, percent=False)
+        ax.xaxis.set_major_locator(plotting.LogLocator(subs=(1,), numticks=8))
+        plotting.label_ends(ax, [(name if name != "active" else "voxels", x, y, colour) for name, x, y, colour in ends])
+    plotting.save(made, path)
+
+
+def write(folder, origin, of_kinds):
+    folder.mkdir(parents=True, exist_ok=True)
+    table, picture = folder / "sizes.csv", folder / "sizes.png"
+    with open(table, "w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["what", "size", "read_seconds", "load_seconds", "pass_seconds", "memory_gb"])
+        for kind, rows in of_kinds.items():
+            for r in rows:
+                writer.writerow([kind, r["size"], *(f"{r[k]:.3f}" for k in ("read_seconds", "load_seconds", "pass_seconds")), f"{r['memory_bytes'] * 1e-9:.2f}"])
+        writer.writerow(["exponent of", "load", "pass", "memory"])
+        for kind, rows in of_kinds.items():
+            writer.writerow([f"{kind}, exponents", *(f"{exponent(rows, k):.2f}" for k in ("load_seconds", "pass_seconds", "memory_bytes"))])
+    plot(of_kinds, picture)
+    origin.stamp(picture, table)
+
+
+def grows_too_fast(rows):
+    first, last = rows[0], rows[-1]
+    allowed = 2 * first["pass_seconds"] * math.log(last["size"]) / math.log(first["size"])
+    return last["pass_seconds"] > allowed or max(exponent(rows, "load_seconds"), exponent(rows, "memory_bytes")) > 1.1
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--csv", type=Path)
-    parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin")
+    parser.add_argument("--quick", action="store_true", help="the two smallest sizes of each")
+    parser.add_argument("--output", type=Path, help="folder of the table and of the plot")
+    parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin", help="folder of mote")
     args = parser.parse_args()
-    found, grows = [], False
-    for name, (make, sizes) in ROWS.items():
-        rows = []
+    origin, of_kinds = Origin(__file__, args.quick), {}
+    for kind, (make, sizes) in ROWS.items():
+        rows = of_kinds[kind] = []
         for size in sizes[:2] if args.quick else sizes:
             with tempfile.TemporaryDirectory() as folder:
-                rows.append({"what": name, **measure(args, make, size, Path(folder))})
+                rows.append(measure(args, origin, make, size, Path(folder)))
             r = rows[-1]
-            print(f"{name:32} {r['size']:>11,}  read {r['read_seconds']:6.2f} s  load {r['load_seconds']:6.2f} s  pass {r['pass_seconds']:5.2f} s  "
+            print(f"{kind:32} {r['size']:>11,}  read {r['read_seconds']:6.2f} s  load {r['load_seconds']:6.2f} s  pass {r['pass_seconds']:5.2f} s  "
                   f"{r['memory_bytes'] * 1e-9:5.2f} GB", flush=True)
-        of = {key: exponent(rows, key) for key in ("load_seconds", "pass_seconds", "memory_bytes")}
-        first, last = rows[0], rows[-1]
-        allowed = 2 * first["pass_seconds"] * math.log(last["size"]) / math.log(first["size"])
-        print(f"{name:32} exponents: load {of['load_seconds']:.2f}, pass {of['pass_seconds']:.2f}, memory {of['memory_bytes']:.2f}", flush=True)
-        grows = grows or last["pass_seconds"] > allowed or max(of["load_seconds"], of["memory_bytes"]) > 1.1
-        found += rows
-    if args.csv:
-        with open(args.csv, "w", newline="") as file:
-            writer = csv.DictWriter(file, found[0], lineterminator="\n")
-            writer.writeheader()
-            writer.writerows({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()} for row in found)
-    return int(grows)
+        print(f"{kind:32} exponents: load {exponent(rows, 'load_seconds'):.2f}, pass {exponent(rows, 'pass_seconds'):.2f}, "
+              f"memory {exponent(rows, 'memory_bytes'):.2f}", flush=True)
+    if args.output:
+        write(args.output, origin, of_kinds)
+    return int(any(grows_too_fast(rows) for rows in of_kinds.values()))
 
 
 if __name__ == "__main__":
