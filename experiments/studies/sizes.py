@@ -133,6 +133,7 @@ def plot(of_kinds, path):
             ends.append((kind.split(" ")[0] if kind != "point lights" else "lights", x[-1], y[-1], colour))
         plotting.log_axes(ax, "triangles, instances, lights, voxels", measured, percent=False)
         ax.xaxis.set_major_locator(plotting.LogLocator(subs=(1,), numticks=8))
+        ax.xaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"$10^{{{round(math.log10(v))}}}$"))
         plotting.label_ends(ax, [(name if name != "active" else "voxels", x, y, colour) for name, x, y, colour in ends])
     plotting.save(made, path)
 
