@@ -14,6 +14,7 @@ constexpr int lobe_count = VmfMixture::capacity;
 constexpr int steps = 3;                 ///< of expectation and maximisation, for each batch
 constexpr double weight_prior = 0.1;     ///< a: effective samples in every lobe
 constexpr double direction_prior = 0.2;  ///< b: effective samples of all directions
+constexpr double largest_share = 0.05;   ///< of the light, that one sample of many counts as
 
 /// A direction and the inverse distance of what lies there.
 struct Sight {
@@ -46,28 +47,46 @@ void responsibilities(const VmfMixture& m, const Vec3& w, float (&g)[lobe_count]
     for (float& v : g) v /= total;
 }
 
+/// Bound of weights with which no sample brings more than its share of the bounded light, or of few samples
+/// twice what is even. Without it one path would draw all lobes to one direction, where they stay together.
+double weight_bound(std::span<const GuidingSample> samples, double light_so_far) {
+    double bound = 0.0, lit = 0.0;
+    for (const GuidingSample& s : samples) bound = std::max(bound, double(s.weight)), lit += s.weight > 0.0f;
+    const double share = std::max(largest_share, 2.0 / std::max(lit, 1.0));
+    for (int step = 0; step < 32; ++step) {
+        double light = light_so_far;
+        for (const GuidingSample& s : samples) light += std::min(double(s.weight), bound);
+        if (share * light >= 0.99 * bound) break;
+        bound = share * light;
+    }
+    return bound;
+}
+
 }  // namespace
 
 void MixtureFit::add(std::span<const GuidingSample> samples) {
     samples_ += double(samples.size());
+    const double bound = weight_bound(samples, light());
     Sums sums[lobe_count];
     for (int step = 0; step < steps; ++step) {
         std::copy(sums_, sums_ + lobe_count, sums);
-        expect(samples, sums);
+        expect(samples, bound, sums);
         maximise(sums);
     }
     std::copy(sums, sums + lobe_count, sums_);
 }
 
-void MixtureFit::expect(std::span<const GuidingSample> samples, Sums (&sums)[lobe_count]) const {
+void MixtureFit::expect(std::span<const GuidingSample> samples, double bound,
+                        Sums (&sums)[lobe_count]) const {
     for (const GuidingSample& s : samples) {
         if (!(s.weight > 0.0f)) continue;
         const Sight seen = by_parallax({s.direction, s.inverse_distance}, s.position, pivot_);
         float g[lobe_count];
         responsibilities(mixture_, seen.direction, g);
+        const double weight = std::min(double(s.weight), bound);
         for (int k = 0; k < lobe_count; ++k) {
-            const double w = double(g[k]) * double(s.weight);
-            sums[k].weight += w, sums[k].squares += w * double(s.weight);
+            const double w = double(g[k]) * weight;
+            sums[k].weight += w, sums[k].squares += w * weight;
             sums[k].inverse_distance += w * double(seen.inverse_distance);
             sums[k].direction += w * Vec3d(seen.direction);
         }

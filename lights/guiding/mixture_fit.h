@@ -4,7 +4,7 @@
 // Sums over samples i with weights w_i and responsibilities g_ik of lobe k,
 //   W_k = sum g w,   R_k = sum g w omega,   Q_k = sum g w^2,
 // add up over batches. A lobe has n_k = W_k^2 / Q_k effective samples (Kish 1965); a lone firefly is one,
-// however bright it is. With them
+// however bright it is, and brings at most 1/20 of the light. With them
 //   weight_k     = (n W_k / W + a) / (n + K a),
 //   mean cosine  = n_k / (n_k + b) |R_k| / W_k,
 // are the maximum a posteriori. Each lobe also has the weighted mean of its samples' inverse distances, from
@@ -52,7 +52,8 @@ class MixtureFit {
         double weight = 0.0, squares = 0.0, inverse_distance = 0.0;
         core::Vec3d direction{0.0};
     };
-    void expect(std::span<const GuidingSample> samples, Sums (&sums)[VmfMixture::capacity]) const;
+    void expect(std::span<const GuidingSample> samples, double bound,
+                Sums (&sums)[VmfMixture::capacity]) const;
     void maximise(const Sums (&sums)[VmfMixture::capacity]);
 
     core::Vec3 pivot_;

@@ -98,6 +98,28 @@ TEST_CASE("One sample, however bright, leaves a wide mixture", "[guiding]") {
     for (int i = 0; i < 200; ++i) CHECK(m.pdf_solid_angle(direction(rng)) > 1e-5f);
 }
 
+TEST_CASE("A caustic that appeared once in training is forgotten", "[guiding]") {
+    // A path a million times as bright as all others: it draws at most its lobes, which later passes bring
+    // back to where light is; directions keep their density meanwhile.
+    MixtureFit fit(Vec3(0.0f)), calm(Vec3(0.0f));
+    const Vec3 firefly = glm::normalize(Vec3(0.3f, -1.0f, 0.1f));
+    auto samples = samples_of(three_lobes(), 4000, 4);
+    calm.add(samples);
+    double light = 0.0;
+    for (const GuidingSample& s : samples) light += double(s.weight);
+    samples.push_back({Vec3(0.0f), firefly, float(1e6 * light), 0.0f});
+    fit.add(samples);
+    for (const GuidingSample& s : samples) CHECK(fit.at(Vec3(0.0f)).pdf_solid_angle(s.direction) > 1e-4f);
+    for (int pass = 0; pass < 30; ++pass) {  // each halves what was learned before
+        fit.scale(0.5), calm.scale(0.5);
+        const auto later = samples_of(three_lobes(), 4000, std::uint64_t(10 + pass));
+        fit.add(later), calm.add(later);
+    }
+    const double locked = divergence(three_lobes(), fit.at(Vec3(0.0f)));
+    CAPTURE(locked, divergence(three_lobes(), calm.at(Vec3(0.0f))));
+    CHECK(locked < 0.1);
+}
+
 TEST_CASE("Nothing learned is an empty mixture, and directions without light teach nothing", "[guiding]") {
     GuidingField f = field();
     CHECK(f.at(Vec3(1.0f)).empty);
