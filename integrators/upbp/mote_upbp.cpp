@@ -84,7 +84,7 @@ void register_mote_upbp(Registry& registry) {
          row("pp3d", &S::point_point, "Photons in media around collisions of eye paths."),
          row("pb2d", &S::point_beam, "Photons in media along rays of eye paths."),
          row("bb1d", &S::beam_beam,
-             "Rays of light paths in media that rays of eye paths cross; of 2000 light paths a pass, if "
+             "Rays of light paths in media that rays of eye paths cross; of 500 light paths a pass, if "
              "there "
              "are more, and by a radius that shrinks with more than 100."),
          row("light_beams", &S::light_beams, lengths,

@@ -20,7 +20,7 @@ constexpr std::uint32_t light_path_stream = 0x75706270u;
 constexpr double paths_of_first_radius = 1e4;
 /// Beams cross far more often than points lie beside them, and most of their boxes are empty: so many light
 /// paths have beams, however many there are, and so many the first radius.
-constexpr std::size_t paths_with_beams = 2000;
+constexpr std::size_t paths_with_beams = 500;
 constexpr double paths_of_first_beam_radius = 100.0;
 
 /// Sum over all connections of a pixel's light path with its eye path, and over all merges of its eye path
