@@ -66,7 +66,7 @@ std::string quoted(const std::vector<std::string>& command_line) {
 }
 
 std::size_t peak_memory_bytes() {
-    // The largest size that getrusage() knows contains that of the program which started this one.
+    // getrusage() also counts the program that started this one.
     std::ifstream status("/proc/self/status");
     for (std::string word; status >> word;)
         if (std::size_t kilobytes = 0; word == "VmHWM:" && status >> kilobytes) return 1024 * kilobytes;

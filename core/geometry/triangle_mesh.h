@@ -65,7 +65,7 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     float support(const Vec3& direction) const override;
     float area() const override { return built_->area; }
     ShapeSample sample_area(const Vec2& u) const override;
-    bool closed() const override;  ///< found when first asked for
+    bool closed() const override;  ///< found when first needed
     std::size_t primitive_count() const override { return built_->data.triangles.size(); }
     const SurfaceAttributes* attributes() const override {
         return built_->data.attributes.empty() ? nullptr : this;
@@ -124,7 +124,7 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
         std::vector<Triangle> triangles;
         std::optional<Halves> halves;  ///< of a parallelogram, which needs no table of areas
         float area = 0.0f;
-        FoundOnce<bool> closed;           ///< asked for where a medium begins or ends
+        FoundOnce<bool> closed;           ///< needed where a medium begins or ends
         FoundOnce<Distribution1D> areas;  ///< areas relative to the largest, for samples of points
     };
     const Distribution1D& areas() const;

@@ -30,7 +30,7 @@ LayerOfPasses of_passes(Film& film, std::size_t layer, std::uint32_t fewest) {
             known ? film.layer_variance_of_mean(layer) : std::vector<Rgb>(film.pixels(), Rgb(infinity))};
 }
 
-/// Of the light of all layers, the fraction in each: for pixels where no path has met any.
+/// The fraction of all light in each layer: for pixels where no path has met any.
 std::vector<Vec3d> fractions(const std::vector<LayerOfPasses>& layers) {
     std::vector<Vec3d> light(layers.size(), Vec3d(0.0));
     Vec3d all(0.0);
