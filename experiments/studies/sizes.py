@@ -24,6 +24,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "experiments/figures"))
 import plotting
+from occluders import write_ply
 from origin import Origin
 
 VIEW = """<scene version="3.0.0"><integrator type="{integrator}"/><sensor type="perspective"><float name="fov" value="50"/>
@@ -50,13 +51,8 @@ def terrain(path, triangles):
         frequency, height = 1.9 * frequency, 0.55 * height
     corner = np.arange(n * n, dtype="<i4").reshape(n, n)
     a, b, c, d = (corner[i:n - 1 + i, j:n - 1 + j].ravel() for i in (0, 1) for j in (0, 1))
-    faces = np.empty(2 * len(a), dtype=[("count", "u1"), ("corners", "<i4", 3)])
-    faces["count"], faces["corners"][0::2], faces["corners"][1::2] = 3, np.stack([a, c, b], -1), np.stack([b, c, d], -1)
-    with open(path, "wb") as file:
-        file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {n * n}\nproperty float x\nproperty float y\nproperty float z\n"
-                   f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n".encode())
-        np.stack([x, y, z], -1).astype("<f4").tofile(file)
-        faces.tofile(file)
+    faces = np.stack([a, c, b, b, c, d], -1).reshape(-1, 3)
+    write_ply(path, np.stack([x, y, z], -1).reshape(-1, 3), faces)
     return len(faces)
 
 
@@ -93,10 +89,11 @@ def voxels(args, size, folder):
     return int(made.stdout.split()[-1]), path, "volpath", FOG.format(path) + SKY
 
 
+# By name: what makes the scene, its sizes; the first word names a line of the plot.
 ROWS = {"triangles": (triangles, (10_000, 100_000, 1_000_000, 10_000_000, 20_000_000)),
         "instances of 100,000 triangles": (instances, (100, 1000, 10_000, 100_000)),
-        "point lights": (lights, (100, 1000, 10_000, 100_000)),
-        "active voxels of a sparse grid": (voxels, (250, 500, 1000, 2000))}
+        "lights": (lights, (100, 1000, 10_000, 100_000)),
+        "voxels of a sparse grid, active": (voxels, (250, 500, 1000, 2000))}
 
 
 def seconds_to_read(path):
@@ -130,11 +127,11 @@ def plot(of_kinds, path):
         for colour, (kind, rows) in zip((plotting.BLUE, plotting.ORANGE_RED, plotting.GREEN, plotting.BLACK), of_kinds.items()):
             x, y = [r["size"] for r in rows], [r[key] for r in rows]
             ax.plot(x, y, "o-", color=colour)
-            ends.append((kind.split(" ")[0] if kind != "point lights" else "lights", x[-1], y[-1], colour))
+            ends.append((kind.split()[0], x[-1], y[-1], colour))
         plotting.log_axes(ax, "triangles, instances, lights, voxels", measured, percent=False)
         ax.xaxis.set_major_locator(plotting.LogLocator(subs=(1,), numticks=8))
         ax.xaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"$10^{{{round(math.log10(v))}}}$"))
-        plotting.label_ends(ax, [(name if name != "active" else "voxels", x, y, colour) for name, x, y, colour in ends])
+        plotting.label_ends(ax, ends)
     plotting.save(made, path)
 
 

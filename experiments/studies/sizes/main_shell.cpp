@@ -1,7 +1,6 @@
 // A cloud of any number of voxels that is mostly empty: a shell of fog around a sphere, in ripples.
 //
-//   mote_study_shell OUT.vdb RADIUS     RADIUS in voxels; the shell is 12 voxels thick, and fits a box of
-//   edge 2
+//   mote_study_shell OUT.vdb RADIUS     RADIUS in voxels; the shell is 12 voxels thick, in a box of edge 2
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
