@@ -10,16 +10,27 @@ namespace mote::core {
 
 namespace {
 
-/// Mean of both halves over the pixels around each.
+/// Mean of both halves, without most of its noise: over those pixels around each that are alike. Over all of
+/// them, the edge of a cloud against the sky would lose light, and the error be relative to less of it.
 std::vector<Rgb> smoothed_mean(const PictureHalf& a, const PictureHalf& b, int width, int height) {
-    std::vector<Rgb> result(a.passes.size());
+    const std::size_t pixels = a.passes.size();
+    std::vector<glm::dvec3> mean(pixels);
+    std::vector<double> variance(pixels);
+    for (std::size_t p = 0; p < pixels; ++p) {
+        mean[p] = 0.5 * (glm::dvec3(a.passes[p]) + glm::dvec3(b.passes[p]));
+        variance[p] = 0.25 * (mean_of_channels(a.variance[p]) + mean_of_channels(b.variance[p]));
+    }
+    std::vector<Rgb> result(pixels);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            Rgb sum(0.0f);
-            float count = 0.0f;
-            for_each_near(x, y, width, height,
-                          [&](std::size_t p) { sum += a.passes[p] + b.passes[p], count += 2.0f; });
-            result[std::size_t(y * width + x)] = sum / count;
+            const std::size_t p = std::size_t(y * width + x);
+            glm::dvec3 sum(0.0);
+            double count = 0.0;
+            for_each_near(x, y, width, height, [&](std::size_t q) {
+                if (are_alike(mean_square(mean[q] - mean[p]), variance[p], variance[q]))
+                    sum += mean[q], count += 1.0;
+            });
+            result[p] = Rgb(sum / count);
         }
     return result;
 }

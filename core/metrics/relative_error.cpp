@@ -14,7 +14,6 @@ namespace mote::core {
 
 namespace {
 
-constexpr double alike = 9.0;  ///< three standard deviations, squared
 constexpr double certain_deviations = 3.0;
 constexpr double darkest_fraction = 0.01;  ///< (1 / 10)^2 in Eq. (1)
 
@@ -52,9 +51,8 @@ Smoothed smoothed(std::span<const Rgb> picture, std::span<const Rgb> variance, i
             double count = 0.0;
             const double own = mean_of_channels(variance[p]);
             for_each_near(x, y, width, height, [&](std::size_t q) {
-                if (q == p || mean_square(glm::dvec3(picture[q]) - glm::dvec3(picture[p])) >
-                                  alike * (own + mean_of_channels(variance[q])))
-                    return;
+                const double square = mean_square(glm::dvec3(picture[q]) - glm::dvec3(picture[p]));
+                if (q == p || !are_alike(square, own, mean_of_channels(variance[q]))) return;
                 sum += glm::dvec3(picture[q]), count += 1.0;
             });
             const glm::dvec3 here(picture[p]), all = (sum + here) / (count + 1.0);

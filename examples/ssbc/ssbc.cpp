@@ -1,7 +1,7 @@
 // Screen-space bias compensation of a picture file, of whatever renderer: reads positions, normals,
 // reflectance and light from an EXR, adds what a bound on the geometry term took, writes the result.
 //
-//   mote render room.xml --integrator mote_vpl --passes 4 --auxiliary -o room.exr
+//   mote render room.xml --passes 4 --auxiliary -o room.exr      (the scene beside this file)
 //   ssbc room.exr compensated.exr
 #include <mote/core/formats/pictures/image_file.h>
 #include <mote/screenspace/ssbc/ssbc.h>
@@ -30,10 +30,8 @@ int main(int argc, char** argv) try {
     out.width = image.width, out.height = image.height;
     out.add_rgb("", beauty);
     core::write_exr(argv[2], out);
-    const double share = added / light;
     std::printf("%d x %d pixels: the compensation adds %.2f %% of the picture's light\n", out.width,
-                out.height, 100.0 * share);
-    return share > 0.012 && share < 0.0234 ? 0 : 1;  // path tracing says that room.exr lacks 2.34 %
+                out.height, 100.0 * added / light);
 } catch (const std::exception& error) {
     return std::fprintf(stderr, "%s\n", error.what()), 1;
 }

@@ -71,7 +71,7 @@ def percent(values):
 def check(beauty, multiple, few):
     claims = Claims()
     high, low = peak(few, "unbounded"), peak(few, "bounded")
-    claims.check("unbounded VPLs cause high intensity peaks (twice as bright as it should be), bounded ones do not",
+    claims.check("unbounded VPLs cause high intensity peaks (the highest of four sets more than twice as bright as it should be), bounded ones do not",
                  "highest column of each set, over the compensated light of the same VPLs: " +
                  ", ".join(f"{x:.2f}" for x in high) + f"; bounded at most {low.max():.2f}",
                  high.max() > 2 and low.max() < 1.1)

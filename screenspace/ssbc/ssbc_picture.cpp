@@ -143,7 +143,8 @@ SsbcPicture read_ssbc_picture(const ImageChannels& image, const SsbcChannels& ch
     need(position, position_name, "position"), need(normal, normal_name, "normal");
     need(reflectance, reflectance_name, "diffuse reflectance");
     if (!missing.empty())
-        throw InputError("the picture lacks " + missing + suggestion(first, layer_names(image)));
+        throw InputError("the picture lacks " + missing + suggestion(first, layer_names(image)) +
+                         "; mote render writes them with --auxiliary");
     check_reflectance(image, reflectance);
 
     SsbcPicture picture = read_light(image, channels);
