@@ -6,7 +6,7 @@
 
 namespace mote::core {
 
-/// Whether two estimates differ by three standard deviations or less. `square`: |a - b|^2, a mean over
+/// Two estimates differ by three standard deviations or less. `square`: |a - b|^2, a mean over
 /// channels like the variances.
 inline bool are_alike(double square, double variance_of_a, double variance_of_b) {
     return !(square > 9.0 * (variance_of_a + variance_of_b));
