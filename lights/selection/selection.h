@@ -91,8 +91,8 @@ class TileSelector {
     }
 };
 
-/// A selection prepared for the VPLs of one pass: makes the selector of a task, which it outlives. Safe from
-/// many threads.
+/// A selection prepared for the VPLs of one pass: makes the selector of a task, which keeps what it needs and
+/// may outlive it. Safe from many threads.
 using VplSelector = std::function<std::unique_ptr<TileSelector>()>;
 
 /// Options of a many-light pass that not every selection goes with.

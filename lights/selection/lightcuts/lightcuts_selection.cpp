@@ -12,11 +12,20 @@ using namespace core;
 
 namespace {
 
+/// The hierarchy of a pass.
+struct VplHierarchy {
+    explicit VplHierarchy(const VplSet& vpls) : leaves(vpls), lights(leaves) {}
+    VplLeaves leaves;
+    LightHierarchy lights;
+};
+
 class TileLightcuts final : public TileSelector {
   public:
-    TileLightcuts(const VplSet& vpls, const LightHierarchy& lights, float bound,
+    TileLightcuts(const VplSet& vpls, std::shared_ptr<const VplHierarchy> hierarchy, float bound,
                   const LightcutSettings& settings, bool multidimensional)
-        : cut_(vpls, lights, bound, settings), multidimensional_(multidimensional) {}
+        : hierarchy_(std::move(hierarchy)),
+          cut_(vpls, hierarchy_->lights, bound, settings),
+          multidimensional_(multidimensional) {}
 
     std::size_t max_points() const override {
         return multidimensional_ ? std::size_t(-1) : TileSelector::max_points();
@@ -57,16 +66,10 @@ class TileLightcuts final : public TileSelector {
         return light;
     }
 
+    std::shared_ptr<const VplHierarchy> hierarchy_;
     GatherPoints points_;
     Lightcut cut_;
     bool multidimensional_;
-};
-
-/// The hierarchy of a pass.
-struct VplHierarchy {
-    explicit VplHierarchy(const VplSet& vpls) : leaves(vpls), lights(leaves) {}
-    VplLeaves leaves;
-    LightHierarchy lights;
 };
 
 const ParameterList<LightcutSettings> parameters{
@@ -94,8 +97,7 @@ class LightcutsSelection final : public Selection {
         const auto hierarchy = std::make_shared<const VplHierarchy>(pass.vpls);
         timer.built(hierarchy->lights.memory_bytes());
         return [hierarchy, &vpls = pass.vpls, bound = pass.bound, *this] {
-            return std::make_unique<TileLightcuts>(vpls, hierarchy->lights, bound, settings_,
-                                                   multidimensional_);
+            return std::make_unique<TileLightcuts>(vpls, hierarchy, bound, settings_, multidimensional_);
         };
     }
     std::string excludes(const GatherOptions& options) const override {

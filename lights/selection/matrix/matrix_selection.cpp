@@ -16,16 +16,16 @@ namespace {
 
 class TileMatrix final : public SamplingSelector {
   public:
-    TileMatrix(const VplSet& vpls, const MatrixClusters& clusters, float bound)
-        : SamplingSelector(vpls, bound), clusters_(clusters) {}
+    TileMatrix(const VplSet& vpls, std::shared_ptr<const MatrixClusters> clusters, float bound)
+        : SamplingSelector(vpls, bound), clusters_(std::move(clusters)) {}
 
   protected:
     std::span<const WeightedVpl> sample(const ReceiverLanes& receivers, Rng& rng) override {
-        return clusters_.sample(receivers, rng, samples_);
+        return clusters_->sample(receivers, rng, samples_);
     }
 
   private:
-    const MatrixClusters& clusters_;
+    std::shared_ptr<const MatrixClusters> clusters_;
     std::vector<WeightedVpl> samples_;
 };
 
@@ -61,7 +61,7 @@ class MatrixSelection final : public Selection {
         pass.statistics.values["matrix_slices"] = double(clusters->slices());
         pass.statistics.values["matrix_receivers"] += double(pass.receivers.size());
         return [clusters, &vpls = pass.vpls, bound = pass.bound] {
-            return std::make_unique<TileMatrix>(vpls, *clusters, bound);
+            return std::make_unique<TileMatrix>(vpls, clusters, bound);
         };
     }
     /// Every stratum of a slice has several receivers to choose from.

@@ -24,9 +24,13 @@ constexpr std::uint32_t candidates_a_cluster = 2;
 
 class TileResampling final : public TileSelector {
   public:
-    TileResampling(const VplSet& vpls, const WideLightTree& tree, float bound, std::uint32_t candidates,
-                   std::uint32_t samples)
-        : vpls_(vpls), tree_(tree), bound_(bound), count_(candidates), resampling_(vpls, bound, samples) {}
+    TileResampling(const VplSet& vpls, std::shared_ptr<const WideLightTree> tree, float bound,
+                   std::uint32_t candidates, std::uint32_t samples)
+        : vpls_(vpls),
+          tree_(std::move(tree)),
+          bound_(bound),
+          count_(candidates),
+          resampling_(vpls, bound, samples) {}
 
     std::size_t max_points() const override { return std::size_t(-1); }
     TileLight gather(const GatherContext&, ReceiverTile& receivers, const VplRange&, BatchVisibility&,
@@ -84,7 +88,7 @@ class TileResampling final : public TileSelector {
     void sample_candidates(Rng& rng) {
         sampler_.learn_into(&learned_);
         const auto sampled =
-            sampler_.from_clusters(tree_, ReceiverClusters(bounds_, tree_), bound_,
+            sampler_.from_clusters(*tree_, ReceiverClusters(bounds_, *tree_), bound_,
                                    std::max(count_ / candidates_a_cluster, 1u), candidates_a_cluster, rng);
         Bounds3 bounds;
         for (const WeightedVpl& c : sampled) bounds.extend(vpls_.lights[c.index].position);
@@ -101,7 +105,7 @@ class TileResampling final : public TileSelector {
     }
 
     const VplSet& vpls_;
-    const WideLightTree& tree_;
+    std::shared_ptr<const WideLightTree> tree_;
     float bound_;
     std::uint32_t count_;
     std::array<Points, 2> points_;  ///< by ReceiverKind
@@ -134,7 +138,7 @@ class ResamplingSelection final : public TreeSelection {
     bool is_unbiased() const override { return true; }
     VplSelector prepare(const SelectionPass& pass) const override {
         return [tree = build_tree(pass), &vpls = pass.vpls, bound = pass.bound, s = settings_] {
-            return std::make_unique<TileResampling>(vpls, *tree, bound, s.candidates, s.samples);
+            return std::make_unique<TileResampling>(vpls, tree, bound, s.candidates, s.samples);
         };
     }
     std::string excludes(const GatherOptions& options) const override {

@@ -14,22 +14,26 @@ namespace {
 
 class TileStochastic final : public SamplingSelector {
   public:
-    TileStochastic(const VplSet& vpls, const WideLightTree& tree, float bound, std::uint32_t samples,
-                   bool by_cut)
-        : SamplingSelector(vpls, bound), tree_(tree), bound_(bound), samples_(samples), by_cut_(by_cut) {}
+    TileStochastic(const VplSet& vpls, std::shared_ptr<const WideLightTree> tree, float bound,
+                   std::uint32_t samples, bool by_cut)
+        : SamplingSelector(vpls, bound),
+          tree_(std::move(tree)),
+          bound_(bound),
+          samples_(samples),
+          by_cut_(by_cut) {}
 
   protected:
     std::span<const WeightedVpl> sample(const ReceiverLanes& receivers, Rng& rng) override {
-        const ReceiverClusters clusters(ReceiverBounds(receivers), tree_);
+        const ReceiverClusters clusters(ReceiverBounds(receivers), *tree_);
         sampler_.learn_into(&learned_[std::size_t(kind_of(receivers))]);
-        return by_cut_ ? sampler_.by_cut(tree_, clusters, bound_, samples_, rng)
-                       : sampler_.by_tree(tree_, clusters, bound_, samples_, rng);
+        return by_cut_ ? sampler_.by_cut(*tree_, clusters, bound_, samples_, rng)
+                       : sampler_.by_tree(*tree_, clusters, bound_, samples_, rng);
     }
     bool learns() const override { return true; }
     void record_light(std::size_t i, double light) override { sampler_.learn(i, light); }
 
   private:
-    const WideLightTree& tree_;
+    std::shared_ptr<const WideLightTree> tree_;
     float bound_;
     std::uint32_t samples_;
     bool by_cut_;
@@ -56,7 +60,7 @@ class StochasticSelection final : public TreeSelection {
     VplSelector prepare(const SelectionPass& pass) const override {
         return [tree = build_tree(pass), &vpls = pass.vpls, bound = pass.bound, samples = samples_,
                 by_cut = by_cut_] {
-            return std::make_unique<TileStochastic>(vpls, *tree, bound, samples, by_cut);
+            return std::make_unique<TileStochastic>(vpls, tree, bound, samples, by_cut);
         };
     }
     void plan(Plan& plan, const SelectionSize& size) const override {
