@@ -65,7 +65,7 @@ std::vector<Rgb> gathered(const Room& room, const lights::VplSet& vpls, const st
         selection->prepare({room.scene, vpls, 4.0f, 1, rays, tracking, statistics, {}, samples});
     const auto selector = make();
     if (!kept) make = {};
-    // What was freed is overwritten.
+    // Memory that was freed is overwritten.
     std::vector<std::vector<float>> others;
     for (std::size_t size = 8; size < 1 << 18; size *= 2) others.emplace_back(size, 1e30f);
     lights::GatherScratch scratch;
