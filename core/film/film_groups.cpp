@@ -5,33 +5,22 @@
 #include "core/film/for_each_pixel.h"
 #include "core/metrics/group_error.h"
 #include "core/metrics/neighbourhood.h"
+#include "core/metrics/reference_pair.h"
 
 namespace mote::core {
 
 namespace {
 
-/// Mean of both halves, without most of its noise: over those pixels around each that are alike. Over all of
+/// Mean of both halves without most of its noise: over the pixels around each that are alike. Over all of
 /// them, the edge of a cloud against the sky would lose light, and the error be relative to less of it.
 std::vector<Rgb> smoothed_mean(const PictureHalf& a, const PictureHalf& b, int width, int height) {
-    const std::size_t pixels = a.passes.size();
-    std::vector<glm::dvec3> mean(pixels);
-    std::vector<double> variance(pixels);
-    for (std::size_t p = 0; p < pixels; ++p) {
-        mean[p] = 0.5 * (glm::dvec3(a.passes[p]) + glm::dvec3(b.passes[p]));
-        variance[p] = 0.25 * (mean_of_channels(a.variance[p]) + mean_of_channels(b.variance[p]));
-    }
-    std::vector<Rgb> result(pixels);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const std::size_t p = std::size_t(y * width + x);
-            glm::dvec3 sum(0.0);
-            double count = 0.0;
-            for_each_near(x, y, width, height, [&](std::size_t q) {
-                if (are_alike(mean_square(mean[q] - mean[p]), variance[p], variance[q]))
-                    sum += mean[q], count += 1.0;
-            });
-            result[p] = Rgb(sum / count);
-        }
+    const PairMean mean = mean_of({a.passes, b.passes, a.variance, b.variance});
+    std::vector<Rgb> result(mean.picture.size());
+    for_each_pixel(result.size(), [&](std::size_t p) {
+        const int x = int(p % std::size_t(width)), y = int(p / std::size_t(width));
+        const AlikeNeighbours near = alike_neighbours(mean.picture, mean.variance, x, y, width, height);
+        result[p] = Rgb((near.sum + glm::dvec3(mean.picture[p])) / (near.count + 1.0));
+    });
     return result;
 }
 

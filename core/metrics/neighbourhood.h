@@ -3,14 +3,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
+
+#include "core/math/vec.h"
 
 namespace mote::core {
-
-/// Two estimates differ by three standard deviations or less. `square`: |a - b|^2, a mean over
-/// channels like the variances.
-inline bool are_alike(double square, double variance_of_a, double variance_of_b) {
-    return !(square > 9.0 * (variance_of_a + variance_of_b));
-}
 
 /// Calls visit(index) for the 5 x 5 pixels around (x, y), itself included, row by row; at the borders for
 /// those of them that there are.
@@ -21,5 +18,15 @@ void for_each_near(int x, int y, int width, int height, const Visit& visit) {
         for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u)
             visit(std::size_t(v) * std::size_t(width) + std::size_t(u));
 }
+
+/// Those of the 5 x 5 pixels around (x, y), without itself, that differ from it by three standard deviations
+/// or less.
+struct AlikeNeighbours {
+    glm::dvec3 sum{0.0};
+    double count = 0.0;
+};
+/// `variance`: of the picture, a value a channel.
+AlikeNeighbours alike_neighbours(std::span<const Rgb> picture, std::span<const Rgb> variance, int x, int y,
+                                 int width, int height);
 
 }  // namespace mote::core

@@ -47,16 +47,9 @@ Smoothed smoothed(std::span<const Rgb> picture, std::span<const Rgb> variance, i
     tbb::parallel_for(0, height, [&](int y) {
         for (int x = 0; x < width; ++x) {
             const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            glm::dvec3 sum(0.0);
-            double count = 0.0;
-            const double own = mean_of_channels(variance[p]);
-            for_each_near(x, y, width, height, [&](std::size_t q) {
-                const double square = mean_square(glm::dvec3(picture[q]) - glm::dvec3(picture[p]));
-                if (q == p || !are_alike(square, own, mean_of_channels(variance[q]))) return;
-                sum += glm::dvec3(picture[q]), count += 1.0;
-            });
-            const glm::dvec3 here(picture[p]), all = (sum + here) / (count + 1.0);
-            const glm::dvec3 others = count > 0.0 ? sum / count : here;
+            const AlikeNeighbours near = alike_neighbours(picture, variance, x, y, width, height);
+            const glm::dvec3 here(picture[p]), all = (near.sum + here) / (near.count + 1.0);
+            const glm::dvec3 others = near.count > 0.0 ? near.sum / near.count : here;
             s.others[p] = std::max(mean_square(others), certain_square(picture[p], variance[p]));
             s.all[p] = mean_square(all);
         }
