@@ -144,7 +144,7 @@ def write(folder, origin, of_kinds):
         for kind, rows in of_kinds.items():
             for r in rows:
                 writer.writerow([kind, r["size"], *(f"{r[k]:.3f}" for k in ("read_seconds", "load_seconds", "pass_seconds")), f"{r['memory_bytes'] * 1e-9:.2f}"])
-        writer.writerow(["exponent of", "load", "pass", "memory"])
+        writer.writerow(["exponent_of", "load", "pass", "memory"])
         for kind, rows in of_kinds.items():
             writer.writerow([f"{kind}, exponents", *(f"{exponent(rows, k):.2f}" for k in ("load_seconds", "pass_seconds", "memory_bytes"))])
     plot(of_kinds, picture)

@@ -104,7 +104,7 @@ def is_number(cell):
 
 
 def is_header(row):
-    return all(re.fullmatch(r"[\w ]+", cell) for cell in row)
+    return all(re.fullmatch(r"\w+", cell) for cell in row)
 
 
 def numbers_of(said):
