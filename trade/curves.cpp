@@ -18,10 +18,20 @@ double mean_of(const std::vector<const Record*>& records, double Record::*member
     return sum / double(records.size());
 }
 
+/// Standard error of a mean over seeds. They share the reference, so the mean has as much of its noise as
+/// each.
+double error_se_of(const std::vector<const Record*>& seeds, double mean) {
+    const double reference = mean_of(seeds, &Record::error_se), n = double(seeds.size());
+    if (seeds.size() < 2) return reference;
+    double squares = 0.0;
+    for (const Record* r : seeds) squares += (r->error - mean) * (r->error - mean);
+    return std::hypot(std::isnan(reference) ? 0.0 : reference, std::sqrt(squares / (n - 1.0) / n));
+}
+
 CurvePoint point_of(const std::vector<const Record*>& records, double floor) {
     CurvePoint p;
     p.wall = mean_of(records, &Record::wall), p.error = mean_of(records, &Record::error);
-    p.error_se = mean_of(records, &Record::error_se);
+    p.error_se = error_se_of(records, p.error);
     p.lowest = std::numeric_limits<double>::infinity(), p.highest = 0.0;
     for (const Record* r : records) {
         p.passes += double(r->passes) / double(records.size());

@@ -14,7 +14,7 @@ namespace mote::trade {
 struct CurvePoint {
     double passes = 0.0, wall = 0.0;                  ///< means over seeds
     double error = 0.0, lowest = 0.0, highest = 0.0;  ///< mean and range over seeds
-    double error_se = unknown;  ///< mean over seeds: they share the reference, whose noise it comes from
+    double error_se = unknown;  ///< of the mean: the reference's noise, and with two seeds or more their spread
     bool below_reference = false;
     bool on_front = false;
 };

@@ -131,7 +131,9 @@ json summary_json(const Results& results) {
            "square root of sum w |d|^2 / sum w |r|^2, without the reference's own noise; |x|^2 is the mean "
            "over channels, d = image - reference r, w = 1 / (|r|^2 + (m / 10)^2), m the median of |r| where "
            "it is not 0; in points the mean over seeds"},
-          {"error_se", "standard error of error from the noise of the reference, which all seeds share"},
+          {"error_se",
+           "standard error of error from the noise of the reference, which all seeds share, and with two "
+           "seeds or more from their spread"},
           {"relmse", "mean over pixels and channels of d^2 / (r^2 + 0.01), d = image - reference r"},
           {"relmse_trimmed", "relMSE without the 0.1 % of pixels where it is largest"},
           {"bias", "sum w <r, d> / sum w |r|^2, signed; mean over seeds; never more than error"},

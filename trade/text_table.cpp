@@ -49,13 +49,17 @@ std::string text_table(const Results& results) {
             line += row[i] + std::string(widths[i] - length_of(row[i]) + 2, ' ');
         text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     }
+    const bool several =
+        std::any_of(results.curves.begin(), results.curves.end(), [](const Curve& c) { return c.seeds > 1; });
     const auto& reference = results.facts.at("reference");
     if (results.judge.floor > 0.0)
         text += fmt::format(
             "\nThe reference has a noise of {:.2g} %, which is subtracted; it judges errors down to {:.2g} "
             "%.\n"
+            "+-: one standard error; of the error by the reference's noise{}.\n"
             "(!): more than three standard errors. Error, bias and noise: docs/testing.md.\n",
-            100.0 * reference.value("noise", 0.0), 100.0 * results.judge.floor);
+            100.0 * reference.value("noise", 0.0), 100.0 * results.judge.floor,
+            several ? " and the spread of the seeds" : "");
     else
         text += "\nHow noisy the reference is, is not known.\n";
     return text;

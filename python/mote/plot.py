@@ -10,7 +10,8 @@ The style file says what the paper calls things; all is optional:
      "seconds": [0.1, 100], "errors": [0.005, 1], "bars": "interval"}
 
 width and height in inches. bars: "interval", 95 % of the mean over seeds (Student's t) together with the reference's noise;
-"range" over seeds; or "none". One seed has no bars but those of the reference.
+"range" over seeds; or "none". One seed has no bars but those of the reference. A bar that reaches zero leaves the axis. Colours
+follow "order", then the methods file, so that a method keeps its colour over scenes.
 """
 from __future__ import annotations
 
@@ -67,7 +68,7 @@ def curves(folder: Union[str, Path], bars: str = "interval") -> Dict[str, List[P
             rows += list(csv.DictReader(stream))
     groups: Dict[str, Dict[str, List[Mapping[str, str]]]] = {}
     for row in rows:
-        if row.get("below_reference") != "1":
+        if row.get("below_reference") != "1" and float(row["error"] or "nan") > 0:
             end = "end" if row.get("final") == "1" else row["passes"]
             groups.setdefault(row["method"], {}).setdefault(end, []).append(row)
     found: Dict[str, List[Point]] = {}
@@ -85,6 +86,29 @@ def curves(folder: Union[str, Path], bars: str = "interval") -> Dict[str, List[P
             points.append(Point(seconds, sum(errors) / len(errors), low, high, len(same)))
         found[method] = sorted(points)
     return found
+
+
+def _places(folder: Union[str, Path], style: Mapping[str, Any], found: Mapping[str, Any]) -> List[str]:
+    """Names of all methods in order: of the style, of the methods file (also those without points), of other renderers."""
+    names = list(style.get("order", []))
+    facts = Path(folder) / "trade.json"
+    if facts.exists():
+        names += [method["name"] for method in json.loads(facts.read_text(encoding="utf-8"))["facts"]["methods"]]
+    return list(dict.fromkeys([*names, *found]))
+
+
+def _lowest(lines: List[tuple]) -> float:
+    """Lower end of the axis: bars are inside of it as far down as a third of their means."""
+    return 0.9 * min(max(p.lower, p.error / 3) for _, _, points in lines for p in points)
+
+
+def _error_axis(style: Mapping[str, Any]) -> str:
+    return "relative RMSE [%]" + {"interval": ", bars 95 %", "range": ", bars range of seeds", "none": ""}[style.get("bars", "interval")]
+
+
+def _minus(point: Point) -> float:
+    """Length of the lower half of a bar [%]: what reaches zero or less ends far below the axis, which is logarithmic."""
+    return 100 * min(point.error - point.lower, (1 - 1e-6) * point.error)
 
 
 def _checked(style: Mapping[str, Any], methods: List[str]) -> None:
@@ -106,9 +130,10 @@ def _tex(text: str) -> str:
 
 
 def _pgfplots(lines: List[tuple], style: Mapping[str, Any]) -> str:
-    axis = ["xlabel={wall time [s]}", r"ylabel={relative RMSE [\%]}", f"width={style.get('width', 3.4)}in",
+    axis = ["xlabel={wall time [s]}", f"ylabel={{{_tex(_error_axis(style))}}}", f"width={style.get('width', 3.4)}in",
             f"height={style.get('height', 2.6)}in", "grid=both", "legend pos=outer north east", "legend cell align=left"]
     axis += [f"title={{{_tex(style['title'])}}}"] if style.get("title") else []
+    axis += [] if style.get("errors") else [f"ymin={100 * _lowest(lines):.3g}"]
     for key, name, scale in (("seconds", "x", 1.0), ("errors", "y", 100.0)):
         if style.get(key):
             axis += [f"{name}min={scale * style[key][0]:g}", f"{name}max={scale * style[key][1]:g}"]
@@ -120,9 +145,7 @@ def _pgfplots(lines: List[tuple], style: Mapping[str, Any]) -> str:
         mark = _PGF_MARKERS.get(of["marker"], "*")
         text += f"\\addplot[color=mote{i}, mark={mark}, mark size=1.2pt, error bars/.cd, y dir=both, y explicit]\n"
         text += "  table[x=t, y=e, y error plus=p, y error minus=m] {\n  t e p m\n"
-        # A logarithmic axis has no place for a bar's end at zero and below.
-        text += "".join(f"  {p.seconds:.6g} {100 * p.error:.6g} {100 * (p.upper - p.error):.6g} "
-                        f"{100 * min(p.error - p.lower, 0.99 * p.error):.6g}\n" for p in points)
+        text += "".join(f"  {p.seconds:.6g} {100 * p.error:.6g} {100 * (p.upper - p.error):.6g} {_minus(p):.8g}\n" for p in points)
         text += f"  }};\n\\addlegendentry{{{_tex(label)}}}\n"
     return text + "\\end{loglogaxis}\n\\end{tikzpicture}\n"
 
@@ -139,14 +162,13 @@ def _draw(lines: List[tuple], style: Mapping[str, Any], output: Path) -> None:
         figure, axes = pyplot.subplots(figsize=(style.get("width", 3.4), style.get("height", 2.6)), layout="constrained")
         for label, of, points in lines:
             x, y = [p.seconds for p in points], [100 * p.error for p in points]
-            bars = [[100 * min(p.error - p.lower, 0.99 * p.error) for p in points], [100 * (p.upper - p.error) for p in points]]
+            bars = [[_minus(p) for p in points], [100 * (p.upper - p.error) for p in points]]
             axes.errorbar(x, y, bars, color=of["color"], marker=of["marker"], markersize=3, linewidth=1, elinewidth=0.6,
                           capsize=1.5, label=label)
-        axes.set(xscale="log", yscale="log", xlabel="wall time [s]", ylabel="relative RMSE [%]", title=style.get("title", ""))
+        axes.set(xscale="log", yscale="log", xlabel="wall time [s]", ylabel=_error_axis(style), title=style.get("title", ""))
         if style.get("seconds"):
             axes.set_xlim(style["seconds"])
-        if style.get("errors"):
-            axes.set_ylim([100 * e for e in style["errors"]])
+        axes.set_ylim([100 * e for e in style["errors"]] if style.get("errors") else (100 * _lowest(lines), None))
         for axis in (axes.xaxis, axes.yaxis):  # 1, 2, 5, 10, not powers of ten: ranges are often less than one
             axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
             axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
@@ -162,13 +184,14 @@ def plot(folder: Union[str, Path], output: Union[str, Path], style: Optional[Map
     """Draws the trade in `folder` into a .tex, .pdf, .svg or .png file. Raises ValueError for a style that does not fit."""
     style, output = style or {}, Path(output)
     found = curves(folder, style.get("bars", "interval"))
-    _checked(style, list(found))
-    order = [name for name in style.get("order", []) if name in found]
+    _checked(style, _places(folder, {}, found))
     lines = []
-    for i, name in enumerate([*order, *(n for n in found if n not in order)]):
+    for i, name in enumerate(_places(folder, style, found)):
         of = {"color": _COLOURS[i % len(_COLOURS)], "marker": _MARKERS[i % len(_MARKERS)], **style.get("methods", {}).get(name, {})}
-        if found[name] and not of.get("hide"):
+        if found.get(name) and not of.get("hide"):
             lines.append((of.get("label", name), of, found[name]))
+    if not lines:
+        raise ValueError(f"nothing to draw in {folder}: no method has points, or all are hidden")
     if output.suffix.lower() == ".tex":
         output.write_text(_pgfplots(lines, style), encoding="utf-8")
     else:

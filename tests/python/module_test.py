@@ -464,6 +464,18 @@ class ModuleTest(unittest.TestCase):
         self.assertIn("\\definecolor{mote0}{HTML}{123456}", text)
         self.assertLess(text.index("Other 100 \\%"), text.index("{points}"))
         self.assertNotIn("{paths}", text)
+        # Bars that reach zero leave the axis, which ends below a third of the lowest mean.
+        self.assertIn(f"ymin={100 * 0.9 * self.lowest(plot, trade):.3g}", text)
+        self.assertIn("bars 95 \\%", text)
+        # A method's colour is that of its place in the methods file, whether methods before it have points or not.
+        self.assertEqual(self.colours(plot, trade, "both"), {"paths": "0072B2", "points": "D55E00", "other": "009E73"})
+        (trade / "trade.csv").rename(trade / "all.csv")
+        lines = (trade / "all.csv").read_text().splitlines()
+        (trade / "trade.csv").write_text("\n".join([lines[0], *(line for line in lines[1:] if line.startswith("points"))]) + "\n")
+        self.assertEqual(self.colours(plot, trade, "one"), {"points": "D55E00", "other": "009E73"})
+        (trade / "all.csv").rename(trade / "trade.csv")
+        with self.assertRaisesRegex(ValueError, "nothing to draw"):
+            plot.plot(trade, trade / "none.tex", {"methods": {name: {"hide": True} for name in ("paths", "points", "other")}})
         for wrong in ({"colour": 1}, {"methods": {"pahts": {}}}, {"methods": {"paths": {"colour": ""}}}, {"bars": "some"}):
             with self.assertRaises(ValueError):
                 plot.plot(trade, trade / "none.tex", wrong)
@@ -474,6 +486,17 @@ class ModuleTest(unittest.TestCase):
         for name, begin in (("figure.pdf", b"%PDF"), ("figure.svg", b"<?xml")):
             plot.plot(trade, trade / name, style)
             self.assertTrue((trade / name).read_bytes().startswith(begin))
+
+    def lowest(self, plot, trade):
+        points = [p for name, of in plot.curves(trade).items() if name != "paths" for p in of]
+        return min(max(p.lower, p.error / 3) for p in points)
+
+    def colours(self, plot, trade, name):
+        """Colours of a figure without a style, by the legend's entries."""
+        import re
+        plot.plot(trade, trade / f"{name}.tex")
+        text = (trade / f"{name}.tex").read_text()
+        return dict(zip(re.findall("legendentry{(.*)}", text), re.findall("{HTML}{(.*)}", text)))
 
     def test_trade_of_scenes(self):
         """A scene with its changes, of a file, of text and of a dictionary: the errors of the same renders are the same."""

@@ -86,6 +86,19 @@ TEST_CASE("A curve is the mean over seeds, with their range", "[trade]") {
     CHECK(a.bias_se == Approx(std::sqrt(2.0) * 0.01 / 2.0));
 }
 
+TEST_CASE("The standard error of a mean has the noise of the reference, and that of the seeds", "[trade]") {
+    std::vector<Record> records = {record("a", 1, 4, 1.0, 0.2)};
+    records[0].error_se = 0.03;
+    CHECK(curve_of(records).error_se() == Approx(0.03));
+    // Two seeds: their spread is 0.1 / sqrt 2 each, 0.05 of the mean; the reference's noise is the same for
+    // both.
+    records.push_back(record("a", 2, 4, 1.0, 0.3));
+    records[1].error_se = 0.03;
+    CHECK(curve_of(records).error_se() == Approx(std::hypot(0.03, 0.05)));
+    records[0].error_se = mote::trade::unknown;
+    CHECK(curve_of(records).error_se() == Approx(0.05));
+}
+
 TEST_CASE("With four seeds the standard error of the bias is at least that of their spread", "[trade]") {
     std::vector<Record> records;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
