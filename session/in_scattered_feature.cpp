@@ -17,7 +17,7 @@ std::shared_ptr<const Integrator> marching(const Registry& registry) {
     p.category = Category::integrator, p.type = "mote_single_scattering";
     p.values["lights"] = {std::string("positional"), {}};
     p.values["steps"] = {std::int64_t(16), {}};  // 64 take twice as long and gain nothing in the regression
-    return std::dynamic_pointer_cast<const Integrator>(registry.factory(p.category, p.type)(p));
+    return std::dynamic_pointer_cast<const Integrator>(registry.make(p));
 }
 
 }  // namespace

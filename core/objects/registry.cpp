@@ -47,6 +47,29 @@ const Factory& Registry::factory(Category category, const std::string& type) con
     return it->second.factory;
 }
 
+std::shared_ptr<Object> Registry::make(const Properties& properties) const {
+    const Manual* manual = find(properties.category, properties.type);
+    if (!manual)
+        throw InputError("unknown " + category_name(properties.category) + " type '" +
+                             printable(properties.type) + "'" +
+                             suggestion(properties.type, types(properties.category)),
+                         properties.where);
+    for (const auto& [name, value] : properties.values) require_parameter(*manual, name, value.where);
+    return factory(properties.category, properties.type)(properties);
+}
+
+const Parameter& require_parameter(const Manual& manual, const std::string& name,
+                                   const SourceLocation& where) {
+    std::vector<std::string> known;
+    for (const Parameter& p : manual.parameters) {
+        if (p.name == name) return p;
+        known.push_back(p.name);
+    }
+    throw InputError(category_name(manual.category) + " '" + manual.type + "' has no parameter '" +
+                         printable(name) + "'" + suggestion(name, known),
+                     where);
+}
+
 std::vector<std::string> Registry::types(Category category) const {
     std::vector<std::string> result;
     for (const auto& [key, entry] : entries_)

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/objects/error.h"
 #include "core/objects/object.h"
 #include "core/objects/parameter.h"
 
@@ -41,6 +42,9 @@ class Registry {
     const Manual* find(Category category, const std::string& type) const;
     /// Throws std::out_of_range when unknown.
     const Factory& factory(Category category, const std::string& type) const;
+    /// Makes what `properties` describe, for programs without a scene file: throws InputError for a type or a
+    /// setting that does not exist, with the nearest name, and for a value that the factory refuses.
+    std::shared_ptr<Object> make(const Properties& properties) const;
     /// Names in alphabetical order.
     std::vector<std::string> types(Category category) const;
     std::vector<const Manual*> manuals() const;
@@ -52,6 +56,10 @@ class Registry {
     };
     std::map<std::pair<Category, std::string>, Entry> entries_;
 };
+
+/// The row called `name`; throws InputError with the nearest name where there is none.
+const Parameter& require_parameter(const Manual& manual, const std::string& name,
+                                   const SourceLocation& where);
 
 /// Registers everything in core/: calls the three below, and adds film, samplers and filters.
 void register_core(Registry& registry);

@@ -13,6 +13,8 @@ SurfaceHit ForeignSurface::hit(const Ray& ray, float t, const Vec3& geometric_no
 
 CallbackScene::CallbackScene(SceneCallbacks callbacks) : calls_(std::move(callbacks)) {
     if (calls_.bounds.empty()) throw InputError("a scene of callbacks needs its bounds");
+    if (!calls_.first_hit && !calls_.medium && !calls_.transmittance)
+        throw InputError("a scene of callbacks needs first_hit, a medium, or both");
     std::vector<float> power;
     for (const auto& emitter : calls_.emitters) {
         if (emitter->traits().kind == EmitterKind::environment) environment_ = emitter.get();
@@ -30,7 +32,14 @@ CallbackScene::CallbackScene(SceneCallbacks callbacks) : calls_(std::move(callba
 }
 
 std::optional<SurfaceHit> CallbackScene::first_hit(const Ray& ray) const {
-    return calls_.first_hit ? calls_.first_hit(ray) : std::nullopt;
+    if (!calls_.first_hit) return std::nullopt;
+    std::optional<SurfaceHit> hit = calls_.first_hit(ray);
+    if (!hit) return hit;
+    if (!hit->shape) throw InputError("first_hit gave a hit without a surface");
+    const float sum = hit->t + glm::dot(hit->geometric_normal, Vec3(1.0f)) + hit->error;
+    if (!is_finite(hit->position) || !std::isfinite(sum))
+        throw InputError("first_hit gave a hit whose distance, position or normal is not finite");
+    return hit;
 }
 
 bool CallbackScene::visible(const Ray& segment) const {

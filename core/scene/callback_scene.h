@@ -22,7 +22,8 @@ class ForeignSurface final : public Shape {
   public:
     /// `surface_bsdf` is not null.
     explicit ForeignSurface(std::shared_ptr<Bsdf> surface_bsdf) { bsdf = std::move(surface_bsdf); }
-    /// Hit of a ray at the distance t [m]; `geometric_normal` is unit, outwards. `error`: how far
+    /// Hit of a ray at the distance t [m]; `geometric_normal` is unit, out of the solid that the surface
+    /// bounds (in a room: into the room, for diffuse walls that are seen from there). `error`: how far
     /// along it the point may lie off the surface [m]; rays that leave start so much farther out.
     SurfaceHit hit(const Ray& ray, float t, const Vec3& geometric_normal, float error = 0.0f) const;
 
@@ -37,7 +38,8 @@ class ForeignSurface final : public Shape {
 /// The functions, and the data that algorithms need besides. Rays are segments: only t in (t_min, t_max)
 /// counts.
 struct SceneCallbacks {
-    /// The closest surface, with its `shape` and the shape's BSDF. Empty: there is no surface.
+    /// The closest surface, with its `shape` and the shape's BSDF; nothing where the ray meets none. Empty:
+    /// the scene has no surfaces at all, and must have a medium.
     std::function<std::optional<SurfaceHit>(const Ray&)> first_hit = {};
     /// True if there is no surface. Empty: by first_hit.
     std::function<bool(const Ray&)> visible = {};
@@ -59,9 +61,11 @@ struct SceneCallbacks {
 /// The scene that the callbacks describe. Lights are chosen by their power.
 class CallbackScene final : public LitScene {
   public:
-    /// Throws InputError when the bounds are empty, or when a light's power is negative or not finite.
+    /// Throws InputError when the bounds are empty, when there is neither first_hit nor a medium, or when a
+    /// light's power is negative or not finite.
     explicit CallbackScene(SceneCallbacks callbacks);
 
+    /// Throws InputError when the host's hit has no surface or is not finite.
     std::optional<SurfaceHit> first_hit(const Ray& ray) const override;
     bool visible(const Ray& segment) const override;
     void find_occluded(std::span<ShadowPacket> packets) const override;

@@ -51,8 +51,7 @@ int main() {
          {"all", "uniform", "lightcuts", "stochastic_lightcuts", "light_tree", "resampling", "matrix"}) {
         core::Properties properties;  // all settings at their defaults; properties.values holds others
         properties.category = core::Category::selection, properties.type = type;
-        const auto selection = std::dynamic_pointer_cast<const lights::Selection>(
-            registry.factory(core::Category::selection, type)(properties));
+        const auto selection = std::dynamic_pointer_cast<const lights::Selection>(registry.make(properties));
         const auto [found, error] = gathered(room, vpls, *selection);
         const double expected = room::all_light - room::direct;
         std::printf("%-22s %.3f +- %.3f W/m^2 by bounces, %.3f by energy\n", type, found, error, expected);

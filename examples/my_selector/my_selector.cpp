@@ -76,6 +76,7 @@ class ByIntensity final : public lights::Selection {
                  "unbiased");
         plan_memory(plan, "selection: memory", size);
     }
+    bool is_unbiased() const override { return true; }
 
   private:
     Settings settings_;

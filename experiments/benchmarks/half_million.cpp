@@ -66,7 +66,7 @@ std::shared_ptr<Bsdf> make_bsdf(const Registry& registry, const std::string& typ
     Properties properties;
     properties.category = Category::bsdf, properties.type = type;
     for (auto& [name, value] : values) properties.values[name] = {std::move(value), {}};
-    return std::dynamic_pointer_cast<Bsdf>(registry.factory(Category::bsdf, type)(properties));
+    return std::dynamic_pointer_cast<Bsdf>(registry.make(properties));
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ class SamplingSelector : public TileSelector {
                      BatchVisibility& visibility, core::Rng& rng) final;
 
   protected:
-    /// VPLs with weights 1 / (n p), until the next call.
+    /// VPLs with weights 1 / (n p), valid until the next call; none: no light. Lanes whose `max_vpl_depth` is
+    /// 0 are idle, what else they hold has no meaning; all lanes get the light of the same VPLs.
     virtual std::span<const WeightedVpl> sample(const ReceiverLanes& receivers, core::Rng& rng) = 0;
     /// If true, record_light() needs the light of every sample.
     virtual bool learns() const { return false; }

@@ -117,13 +117,15 @@ class Selection : public core::Object {
     virtual VplSelector prepare(const SelectionPass& pass) const = 0;
     /// If true, every receiver takes all VPLs, which points and pixels may share out.
     virtual bool takes_all() const { return false; }
-    /// True where the light of all VPLs is the mean of what it gathers.
+    /// True where the mean of what it gathers is the light of all VPLs: the integrator is then called
+    /// unbiased where its bound and its compensation allow it. The plan says so, tests hold it to it.
     virtual bool is_unbiased() const { return false; }
     /// Name of an option that this selection does not go with; empty where there is none.
     virtual std::string excludes(const GatherOptions& options) const;
     /// Eye paths whose receivers prepare() evaluates.
     virtual std::size_t receiver_paths() const { return 0; }
-    /// Largest size in memory while the selector is built, besides the VPLs, and of what stays.
+    /// Largest size in memory while prepare() works and of what its selectors share, besides the VPLs
+    /// [bytes].
     virtual std::size_t memory_bytes(std::size_t vpls) const = 0;
     virtual void plan(core::Plan& plan, const SelectionSize& size) const = 0;
 

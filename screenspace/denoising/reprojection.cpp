@@ -12,13 +12,6 @@ using namespace core;
 
 namespace {
 
-void check(const FrameFeatures& f) {
-    const auto fits = [&](std::size_t size) { return size == 0 || size == f.pixels(); };
-    if (f.width < 1 || f.height < 1 || !fits(f.position.size()) || !fits(f.normal.size()) ||
-        !fits(f.id.size()) || !fits(f.motion.size()) || !fits(f.previous_position.size()))
-        throw std::invalid_argument("features do not have the size of the frame");
-}
-
 /// Distance to the nearer neighbour in a row or column, the larger of both; infinite without neighbours.
 float footprint(const FrameFeatures& f, int x, int y) {
     const auto at = [&](int i, int j) {
@@ -68,9 +61,16 @@ class Rejection {
 
 }  // namespace
 
+void FrameFeatures::check() const {
+    const auto fits = [&](std::size_t size) { return size == 0 || size == pixels(); };
+    if (width < 1 || height < 1 || !fits(position.size()) || !fits(normal.size()) || !fits(id.size()) ||
+        !fits(motion.size()) || !fits(previous_position.size()))
+        throw std::invalid_argument("features do not have the size of the frame");
+}
+
 std::vector<PixelHistory> reproject(const FrameFeatures& now, const FrameFeatures& before,
                                     const RejectionSettings& settings) {
-    check(now), check(before);
+    now.check(), before.check();
     std::vector<PixelHistory> result(now.pixels());
     const Rejection rejection(now, before, settings);
     tbb::parallel_for(0, now.height, [&](int y) {

@@ -28,6 +28,8 @@ struct FrameFeatures {
     std::span<const core::Vec3> previous_position;
 
     std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
+    /// Throws std::invalid_argument unless every span is empty or has one entry a pixel.
+    void check() const;
 };
 
 struct RejectionSettings {

@@ -109,6 +109,10 @@ SequenceDenoiser::LayerResult SequenceDenoiser::denoise(const DenoiserFrame& fra
 }
 
 std::vector<Rgb> SequenceDenoiser::add(const DenoiserFrame& frame, bool connected, CancelToken cancelled) {
+    frame.features.check();
+    if (frame.layers.empty()) throw std::invalid_argument("a frame has no layers");
+    if (!frame.variance.empty() && frame.variance.size() != frame.features.pixels())
+        throw std::invalid_argument("the variance does not have the size of the frame");
     if (frame_ > 0 && frame.layers.size() != layers_.size())
         throw std::invalid_argument("a frame has other layers than those before it");
     while (layers_.size() < frame.layers.size())
@@ -129,8 +133,7 @@ std::vector<Rgb> SequenceDenoiser::add(const DenoiserFrame& frame, bool connecte
     // Remaining fraction of a frame's variance: 1 / n, or less beyond the longest history.
     std::vector<Rgb> variance(frame.variance.begin(), frame.variance.end());
     const std::span<const float> length = history();
-    if (variance.size() == length.size())
-        for (std::size_t p = 0; p < variance.size(); ++p) variance[p] /= std::max(length[p], 1.0f);
+    for (std::size_t p = 0; p < variance.size(); ++p) variance[p] /= std::max(length[p], 1.0f);
     return blend_by_variance(frame.features.width, frame.features.height, denoised, noisy, variance);
 }
 

@@ -38,14 +38,15 @@ struct DenoiserSettings {
     bool blend = true;                                 ///< by the variance, where it is known
 };
 
-/// Denoises frames one after the other.
+/// Denoises frames one after the other. What no feature distinguishes from its neighbourhood is blurred: a
+/// shadow's edge on an even wall, unless `variance` holds the picture against it.
 class SequenceDenoiser {
   public:
     /// Before the first frame.
     explicit SequenceDenoiser(const DenoiserSettings& settings = {});
 
     /// The next frame, which has the layers of those before it. `connected` false: nothing is taken from
-    /// those, such as after a cut. Throws std::invalid_argument when sizes differ.
+    /// those, such as after a cut. Throws std::invalid_argument when sizes differ or there is no layer.
     std::vector<core::Rgb> add(const DenoiserFrame& frame, bool connected = true,
                                core::CancelToken cancelled = {});
     /// Frames that the pixels of the last one were accumulated from.

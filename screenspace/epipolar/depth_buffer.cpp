@@ -88,7 +88,10 @@ struct Task final : InScatteringTask {
     RayEnd end_of(const Vec2d& film) override { return view.end_of(film); }
     MarchedRay march(const Vec2d& film, const RayEnd& end) override {
         ++marched;
-        return {host(film, double(end.distance)), Rgb(1.0f)};
+        const Rgb radiance = host(film, double(end.distance));
+        if (!core::is_finite(radiance))
+            throw std::invalid_argument("the marching function gave radiance that is not finite");
+        return {radiance, Rgb(1.0f)};
     }
 };
 struct Source final : InScatteringSource {

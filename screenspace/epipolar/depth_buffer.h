@@ -23,7 +23,8 @@ struct DepthBuffer {
 };
 
 /// Radiance that media scatter into the ray through a place of the film [pixels; the middle of the first
-/// pixel is (0.5, 0.5)] before a distance [m].
+/// pixel is (0.5, 0.5)] before a distance [m]: finite. Light that is scattered once has a pole at the lamp,
+/// so a lamp on a pixel's centre makes that pixel as bright as the march's step lets it.
 using MarchFunction = std::function<core::Rgb(const Vec2d& film, double distance)>;
 
 /// Light of all pixels.
@@ -33,7 +34,8 @@ struct DepthBufferLight {
 };
 
 /// Light over the whole picture, from few calls of `march`, in the caller's thread. `lines`: around the whole
-/// border. Throws std::invalid_argument for sizes and positions out of range.
+/// border. Throws std::invalid_argument for sizes and positions out of range, and where `march` gives
+/// radiance that is not finite.
 DepthBufferLight light_over(const DepthBuffer& buffer, int lines, const LineSampling& sampling,
                             const MarchFunction& march);
 

@@ -102,6 +102,15 @@ void SsbcSurfaces::check() const {
     for (const Rgb& r : reflectance)
         if (!(min_component(r) >= 0.0f) || !(max_component(r) <= 1.0f))
             throw std::invalid_argument("a reflectance is not between 0 and 1");
+    for (std::size_t i = 0; i < pixel_count(); ++i) {
+        if (area[i] == 0.0f) continue;
+        if (!(area[i] > 0.0f) || !is_finite(area[i]))
+            throw std::invalid_argument("an area is negative or not finite");
+        if (!is_finite(position[i]) || !is_finite(normal[i]) ||
+            !(facing[i] >= -1e-4f && facing[i] <= 1.0001f))  // rounded cosines
+            throw std::invalid_argument(
+                "a position, normal or cosine of a patch is not finite or out of range");
+    }
 }
 
 SsbcSurfaces ssbc_surfaces(const GBuffer& buffer) {

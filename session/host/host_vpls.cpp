@@ -16,13 +16,9 @@ std::shared_ptr<const lights::Selection> selection_of(const HostLightSettings& s
     core::Registry registry;
     lights::register_selection(registry);
     const std::string& type = settings.selection;
-    if (!registry.find(core::Category::selection, type))
-        throw core::InputError("there is no selection '" + type + "'" +
-                               core::suggestion(type, registry.types(core::Category::selection)));
     core::Properties defaults;
     defaults.category = core::Category::selection, defaults.type = type;
-    auto made = std::dynamic_pointer_cast<const lights::Selection>(
-        registry.factory(core::Category::selection, type)(defaults));
+    auto made = std::dynamic_pointer_cast<const lights::Selection>(registry.make(defaults));
     const std::string excluded = made->excludes({.compensation = settings.compensation_steps != 0});
     if (!excluded.empty()) throw core::InputError("selection '" + type + "' does not go with " + excluded);
     return made;

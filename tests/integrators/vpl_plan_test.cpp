@@ -49,8 +49,7 @@ std::shared_ptr<lights::Selection> selection_of(const std::string& type,
     core::Properties properties;
     properties.category = core::Category::selection, properties.type = type;
     for (const auto& [name, value] : values) properties.values[name].value = value;
-    return std::dynamic_pointer_cast<lights::Selection>(
-        registry.factory(core::Category::selection, type)(properties));
+    return std::dynamic_pointer_cast<lights::Selection>(registry.make(properties));
 }
 
 }  // namespace

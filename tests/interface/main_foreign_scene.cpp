@@ -84,7 +84,9 @@ void choosing_lights() {
     }
     expect(std::fabs(sum - 1.0) < 1e-6 && off < 1e-6, "probabilities of a light hierarchy add up to", sum);
 
-    const core::CallbackScene scene({.emitters = emitters, .bounds = {Vec3(0.0f), Vec3(40.0f)}});
+    const auto nothing = [](const core::Ray&) { return std::optional<core::SurfaceHit>(); };
+    const core::CallbackScene scene(
+        {.first_hit = nothing, .emitters = emitters, .bounds = {Vec3(0.0f), Vec3(40.0f)}});
     double by_power = 0.0;
     for (const auto& e : scene.emitters()) by_power += double(scene.light_probability(receiver, e.get()));
     expect(std::fabs(by_power - 1.0) < 1e-6, "probabilities of a scene of callbacks add up to", by_power);

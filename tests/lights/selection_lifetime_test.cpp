@@ -24,8 +24,7 @@ ScatteringVertex receiver(const Scene& scene, Rng& rng) {
 std::shared_ptr<const lights::Selection> selection_of(const std::string& type) {
     Properties properties;
     properties.category = Category::selection, properties.type = type;
-    return std::dynamic_pointer_cast<const lights::Selection>(
-        tests::registry().factory(Category::selection, type)(properties));
+    return std::dynamic_pointer_cast<const lights::Selection>(tests::registry().make(properties));
 }
 
 /// Light of four tiles. `kept`: whether what prepare() returned outlives the selector.

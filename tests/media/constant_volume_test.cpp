@@ -52,7 +52,7 @@ TEST_CASE("a constant volume is a constant texture", "[constvolume]") {
     Properties p;
     p.category = Category::texture, p.type = "volume";
     p.children = {{"volume", Category::volume, std::make_shared<ConstantVolume>(Rgb(0.1f, 0.2f, 0.3f)), {}}};
-    const auto texture = std::dynamic_pointer_cast<Texture>(registry.factory(Category::texture, "volume")(p));
+    const auto texture = std::dynamic_pointer_cast<Texture>(registry.make(p));
     REQUIRE(texture);
     CHECK(texture->eval({0.3f, 0.8f}) == Rgb(0.1f, 0.2f, 0.3f));
     CHECK(texture->constant());

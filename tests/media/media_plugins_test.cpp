@@ -32,7 +32,7 @@ class Element {
     template <typename T = core::Object>
     std::shared_ptr<T> make() {
         p_.warnings = &warnings_;  // not earlier: elements are copied while they are put together
-        return std::dynamic_pointer_cast<T>(registry_.factory(p_.category, p_.type)(p_));
+        return std::dynamic_pointer_cast<T>(registry_.make(p_));
     }
     std::string refusal() {
         try {

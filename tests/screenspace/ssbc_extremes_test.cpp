@@ -125,6 +125,15 @@ TEST_CASE("What cannot be computed is refused", "[ssbc]") {
                     std::invalid_argument);
     CHECK_THROWS_AS(compensate(picture.surfaces, picture.light, with_bound(1.0f, 0)), std::invalid_argument);
     CHECK_THROWS_AS(SsbcSurfaces(0, 3), std::invalid_argument);
+    SsbcSurfaces lost = picture.surfaces;  // written directly, past set()
+    std::size_t patch = 0;
+    while (lost.area[patch] == 0.0f) ++patch;
+    lost.position[patch].y = std::nanf("");
+    CHECK_THROWS_AS(lost.check(), std::invalid_argument);
+    lost.area[patch] = 0.0f;  // takes no part: what else it holds has no meaning
+    CHECK_NOTHROW(lost.check());
+    lost.area[patch] = -1.0f;
+    CHECK_THROWS_AS(lost.check(), std::invalid_argument);
     auto light = picture.light;
     light.pop_back();
     CHECK_THROWS_AS(compensate(picture.surfaces, light, with_bound(1.0f)), std::invalid_argument);

@@ -289,3 +289,18 @@ TEST_CASE("A sequence is denoised: texture stays, noise goes", "[denoising][bmfr
     accumulation_alone.regress = false;
     CHECK(error_after(8, accumulation_alone, false) == Approx(0.125).epsilon(0.1));
 }
+
+TEST_CASE("A frame is refused whose parts differ in size, the first one too", "[temporal]") {
+    const Frame view;
+    const std::vector<Rgb> colour = noisy_frame(0);
+    DenoiserFrame frame{view.features(), {{colour, {}, {}}}, {}};
+    CHECK_NOTHROW(SequenceDenoiser().add(frame));
+    const std::vector<std::uint32_t> short_id(pixels - 1, 0);
+    frame.features.id = short_id;
+    CHECK_THROWS_AS(SequenceDenoiser().add(frame), std::invalid_argument);
+    frame.features.id = {};
+    frame.variance = std::span(colour).first(5);
+    CHECK_THROWS_AS(SequenceDenoiser().add(frame), std::invalid_argument);
+    frame.variance = {}, frame.layers.clear();
+    CHECK_THROWS_AS(SequenceDenoiser().add(frame), std::invalid_argument);
+}

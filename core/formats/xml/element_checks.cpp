@@ -158,17 +158,6 @@ const Manual& require_manual(const Element& e, const Registry& registry) {
         e.where);
 }
 
-const Parameter& require_parameter(const Manual& manual, const std::string& name,
-                                   const SourceLocation& where) {
-    std::vector<std::string> known;
-    for (const Parameter& p : manual.parameters) {
-        if (p.name == name) return p;
-        known.push_back(p.name);
-    }
-    throw InputError(kind(manual) + " has no parameter '" + printable(name) + "'" + suggestion(name, known),
-                     where);
-}
-
 void check_child(const Element& child, const Manual& manual) {
     if (is_value_tag(child.tag))
         check_value(child, manual);

@@ -13,9 +13,6 @@ namespace mote::core {
 
 /// The manual page of an object element. Throws InputError for an unknown type, with the nearest one.
 const Manual& require_manual(const Element& element, const Registry& registry);
-/// The row of a manual page. Throws InputError for an unknown name, with the nearest one.
-const Parameter& require_parameter(const Manual& manual, const std::string& name,
-                                   const SourceLocation& where);
 
 /// Checks tags, attributes, types, parameter names and the kinds of values in the whole scene, and takes up
 /// what reading found. Parameters that are known but have no effect here are removed with a warning.
