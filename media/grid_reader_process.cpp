@@ -143,19 +143,21 @@ std::optional<GridReaderAnswer> read_answer(int fd, const std::string& path,
                                             const core::MemoryBudget& memory) {
     struct stat info {};
     GridReaderHeader h;
+    // Refused while anything can still write to it.
+    if (::fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0) return std::nullopt;
     if (::fstat(fd, &info) != 0 || !read_at(fd, &h, sizeof h, 0)) return std::nullopt;
     const auto size = std::uint64_t(info.st_size);
     if (h.magic != GridReaderHeader::expected_magic || h.text_size > grid_reader_max_text)
         return std::nullopt;
-    if (sizeof h + h.text_size > size) return std::nullopt;
+    if (h.text_offset > size || h.text_size > size - h.text_offset) return std::nullopt;
     if (h.grid_size > size || h.grid_offset > size - h.grid_size) return std::nullopt;
     GridReaderAnswer answer;
     answer.text.resize(h.text_size);
-    if (!read_at(fd, answer.text.data(), h.text_size, sizeof h)) return std::nullopt;
+    if (!read_at(fd, answer.text.data(), h.text_size, h.text_offset)) return std::nullopt;
     if (h.grid_size > 0) {
         memory.require(double(h.grid_size), "the grid of '" + core::printable(path, 300) + "'");
-        answer.buffer = AlignedBuffer(h.grid_size);
-        if (!read_at(fd, answer.buffer.data(), h.grid_size, h.grid_offset)) return std::nullopt;
+        answer.buffer = AlignedBuffer::mapped(fd, h.grid_offset, h.grid_size);
+        if (!answer.buffer.data()) return std::nullopt;
     }
     return answer;
 }
@@ -171,6 +173,21 @@ std::string describe_death(int status) {
 
 AlignedBuffer::AlignedBuffer(std::size_t size)
     : bytes_(static_cast<std::byte*>(::operator new(size, alignment))), size_(size) {}
+
+AlignedBuffer AlignedBuffer::mapped(int file, std::uint64_t offset, std::size_t size) {
+    AlignedBuffer buffer;
+    void* pages = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE, file, off_t(offset));
+    if (pages == MAP_FAILED) return buffer;
+    buffer.bytes_ = {static_cast<std::byte*>(pages), Free(size)}, buffer.size_ = size;
+    return buffer;
+}
+
+void AlignedBuffer::Free::operator()(std::byte* p) const {
+    if (mapped > 0)
+        ::munmap(p, mapped);
+    else
+        ::operator delete(p, alignment);
+}
 
 std::string grid_reader_path() {
     if (const char* named = std::getenv("MOTE_GRID_READER"); named && *named) return named;
@@ -200,7 +217,7 @@ GridReaderAnswer run_grid_reader(const std::string& mode, const std::string& pat
     std::error_code error;
     if (!fs::is_regular_file(path, error)) refuse(path, "no such file");
     const std::string helper = grid_reader_path();
-    const Descriptor memory(::memfd_create("mote_grid", MFD_CLOEXEC));
+    const Descriptor memory(::memfd_create("mote_grid", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (memory.get() < 0) refuse(path, fmt::format("no memory file: {}", std::strerror(errno)));
 
     // large files may take their time: a second for every 10 MB

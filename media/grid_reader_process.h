@@ -11,12 +11,14 @@ namespace mote::media {
 
 struct VdbLoadOptions;
 
-/// Memory aligned for NanoVDB.
+/// Memory aligned for NanoVDB: allocated, or pages of a file.
 class AlignedBuffer {
   public:
     AlignedBuffer() = default;
     /// Buffer of so many bytes, not set.
     explicit AlignedBuffer(std::size_t size);
+    /// Part of a file, from a whole page on; what is written stays here. Null where it cannot be mapped.
+    static AlignedBuffer mapped(int file, std::uint64_t offset, std::size_t size);
     std::byte* data() { return bytes_.get(); }              ///< the first byte, or null
     const std::byte* data() const { return bytes_.get(); }  ///< the first byte, or null
     std::size_t size() const { return size_; }              ///< [bytes]
@@ -24,7 +26,10 @@ class AlignedBuffer {
   private:
     static constexpr std::align_val_t alignment{64};
     struct Free {
-        void operator()(std::byte* p) const { ::operator delete(p, alignment); }
+        std::size_t mapped;  ///< bytes to unmap; 0: allocated
+        Free() : mapped(0) {}
+        explicit Free(std::size_t bytes) : mapped(bytes) {}
+        void operator()(std::byte* p) const;
     };
     std::unique_ptr<std::byte, Free> bytes_;
     std::size_t size_ = 0;

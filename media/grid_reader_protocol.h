@@ -1,5 +1,7 @@
-// Answer of the helper program that reads VDB files: a header, a JSON text, and the NanoVDB buffer, in
-// a memory file that it inherits. The header is written last, so that a helper that died leaves none.
+// Answer of the helper program that reads VDB files: a header, the NanoVDB buffer, and a JSON text, in a
+// memory file that it inherits. The grid is made in the file's pages, which mote then maps: a copy of either
+// process would touch as much memory again. The header is written last, so that a helper that died leaves
+// none.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +9,11 @@
 namespace mote::media {
 
 struct GridReaderHeader {
-    static constexpr std::uint64_t expected_magic = 0x3252444952474d4full;
+    static constexpr std::uint64_t expected_magic = 0x3352444952474d4full;
     std::uint64_t magic = 0;
-    std::uint64_t text_size = 0;    ///< bytes of JSON after the header
-    std::uint64_t grid_offset = 0;  ///< of the NanoVDB buffer from the start of the file
+    std::uint64_t text_offset = 0;  ///< of the JSON from the start of the file
+    std::uint64_t text_size = 0;    ///< its bytes
+    std::uint64_t grid_offset = 0;  ///< of the NanoVDB buffer from the start of the file: whole pages
     std::uint64_t grid_size = 0;    ///< 0: no grid
 };
 

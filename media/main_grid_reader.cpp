@@ -1,14 +1,15 @@
 // mote_grid_reader: reads OpenVDB and NanoVDB files on behalf of mote, in a process that may crash.
 //
 // The only file of the project that includes OpenVDB to read files. It limits its own memory and time before
-// it touches the file, reads without delayed loading, checks kind and values, converts to NanoVDB, and writes
-// the answer into an inherited memory file (grid_reader_protocol.h). It leaves with _exit(), because the tree
-// of a damaged file may crash in its destructor.
+// it touches the file, reads without delayed loading, checks kind and values, and converts to NanoVDB within
+// an inherited memory file (grid_reader_protocol.h). It leaves with _exit(), because the tree of a damaged
+// file may crash in its destructor.
 #include <nanovdb/util/IO.h>
 #include <nanovdb/util/NanoToOpenVDB.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
@@ -65,17 +66,37 @@ void write_all(const void* from, std::size_t size, std::uint64_t offset) {
     }
 }
 
-void answer(const json& document, const void* grid = nullptr, std::size_t grid_size = 0) {
+std::uint64_t grid_offset() { return std::uint64_t(::sysconf(_SC_PAGESIZE)); }
+static_assert(sizeof(GridReaderHeader) <= 4096, "the header fits into a page");
+
+/// NanoVDB's memory: pages of the memory file, behind the header.
+class AnswerBuffer {
+  public:
+    static AnswerBuffer create(std::uint64_t size, const AnswerBuffer* /*pool*/ = nullptr) {
+        AnswerBuffer buffer;
+        constexpr int fd = mote::media::grid_reader_descriptor;
+        if (::ftruncate(fd, off_t(grid_offset() + size)) != 0) throw std::bad_alloc();
+        void* pages = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, off_t(grid_offset()));
+        if (pages == MAP_FAILED) throw std::bad_alloc();
+        buffer.pages_ = static_cast<std::uint8_t*>(pages), buffer.size_ = size;
+        return buffer;
+    }
+    std::uint8_t* data() const { return pages_; }
+    std::uint64_t size() const { return size_; }
+    void clear() {}  // the process ends before long
+
+  private:
+    std::uint8_t* pages_ = nullptr;
+    std::uint64_t size_ = 0;
+};
+
+/// `grid_size`: of the AnswerBuffer, 0 without a grid.
+void answer(const json& document, std::uint64_t grid_size = 0) {
     const std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
     GridReaderHeader h;
-    h.text_size = text.size();
-    h.grid_offset = (sizeof h + text.size() + 63) / 64 * 64;
-    h.grid_size = grid_size;
-    write_all(text.data(), text.size(), sizeof h);
-    if (grid_size > 0)
-        write_all(grid, grid_size, h.grid_offset);
-    else
-        h.grid_offset = 0;
+    h.grid_offset = grid_size > 0 ? grid_offset() : 0, h.grid_size = grid_size;
+    h.text_offset = grid_size > 0 ? h.grid_offset + grid_size : sizeof h, h.text_size = text.size();
+    write_all(text.data(), text.size(), h.text_offset);
     h.magic = GridReaderHeader::expected_magic;
     write_all(&h, sizeof h, 0);
 }
@@ -224,8 +245,8 @@ void read_grid(const Request& request) {
     grid->setTransform(openvdb::math::Transform::createLinearTransform(1.0));
     grid->setName("");
     const auto handle =
-        nanovdb::openToNanoVDB(*grid, nanovdb::StatsMode::BBox, nanovdb::ChecksumMode::Disable);
-    answer(document, handle.data(), handle.size());
+        nanovdb::openToNanoVDB<AnswerBuffer>(*grid, nanovdb::StatsMode::BBox, nanovdb::ChecksumMode::Disable);
+    answer(document, handle.size());
 }
 
 json describe(const openvdb::GridBase& grid, const std::string& name) {
