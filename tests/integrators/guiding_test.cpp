@@ -88,6 +88,14 @@ std::unique_ptr<Estimator> PathsOf::prepare(const Scene& scene, const RenderOpti
     return std::make_unique<PathsOfEstimator>(scene, options, guide_);
 }
 
+/// Radiance 1 from all walls of a closed box: E / (1 - rho) with rho = 1/2, E = 1/2.
+const std::string furnace =
+    R"(<scene version="3.0.0"><shape type="cube"><boolean name="flip_normals" value="true"/>
+        <bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="0.5"/></bsdf></bsdf>
+        <emitter type="area"><rgb name="radiance" value="0.5"/></emitter></shape>
+        <sensor type="perspective"><float name="fov" value="60"/><transform name="to_world">
+        <lookat origin="0.1, 0.2, 0.3" target="1, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)";
+
 const std::string forward_fog = fog("0.5, 1, 2", R"(<phase type="hg"><float name="g" value="0.7"/></phase>)");
 
 }  // namespace
@@ -130,15 +138,36 @@ TEST_CASE("A guide of any directions keeps the mean; a density that is not its o
 }
 
 TEST_CASE("A closed furnace is one with guided paths", "[guiding]") {
-    // Radiance 1 from all walls of a closed box that absorb nothing: E / (1 - rho) with rho = 1/2, E = 1/2.
-    const std::string xml =
-        R"(<scene version="3.0.0"><shape type="cube"><boolean name="flip_normals" value="true"/>
-        <bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="0.5"/></bsdf></bsdf>
-        <emitter type="area"><rgb name="radiance" value="0.5"/></emitter></shape>
-        <sensor type="perspective"><float name="fov" value="60"/><transform name="to_world">
-        <lookat origin="0.1, 0.2, 0.3" target="1, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)";
-    const auto scene = scene_from(xml, 8);
+    const auto scene = scene_from(furnace, 8);
     check_mean_is(render_statistics(*scene, *paths("path", "on"), {4, 400, 1}), "beauty", 1.0, {1.02});
+}
+
+TEST_CASE("A guide that is wrong makes no path heavier than eight times", "[guiding]") {
+    /// One narrow lobe to the ceiling, where no more light comes from than from elsewhere.
+    struct UpGuide final : lights::ScatteringGuide {
+        void find(const ScatteringVertex&, lights::VmfMixture& lobes) const override {
+            lobes = lights::even_mixture();
+            for (int k = 0; k < lights::VmfMixture::capacity; ++k) lobes.set(k, {{0, 1, 0}, 1000.0f}, 0.125f);
+        }
+    } const guide;
+    const auto scene = scene_from(furnace, 8);
+    integrators::EyePathLimits limits;
+    limits.rr_depth = limits.max_depth = 24;
+    double heaviest = 0.0;
+    for (std::uint64_t path = 0; path < 500; ++path) {
+        WalkContext walk;
+        walk.rng = Rng(path);
+        const integrators::EyeRay eye{
+            {Vec3(0.1f, 0.2f, 0.3f), Vec3(1, 0, 0)}, {}, {SamplerKind::independent, 1, 0, path}, walk.rng};
+        integrators::EyePath<false> way(*scene, limits, eye, walk, nullptr, guide);
+        integrators::TransportSum sum;
+        // Without a guide each vertex halves the weight. A guide that is not followed doubles it at most:
+        // twice before the path is guided no further, and once by the vertex that brings it there.
+        for (double unguided = 1.0; way.advance(walk, sum); unguided *= 0.5)
+            heaviest = std::max(heaviest, double(average(way.weights().throughput)) / unguided);
+    }
+    CHECK(heaviest < 8.0 * (1.0 + 1e-4));
+    CHECK(heaviest > 3.9);
 }
 
 TEST_CASE("What is learned is where light comes from", "[guiding]") {
