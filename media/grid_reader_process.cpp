@@ -138,14 +138,23 @@ bool read_at(int fd, void* to, std::size_t size, std::uint64_t offset) {
     return true;
 }
 
+/// Makes the file constant; false where a process may still write to it. The pages of a helper that
+/// has ended may be held for a moment more by a process that reads its state, such as `top`.
+bool seal(int fd) {
+    for (int tries = 0; tries < 1000; ++tries) {
+        if (::fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) == 0) return true;
+        if (errno != EBUSY) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+}
+
 /// Nothing when the helper left no complete answer.
 std::optional<GridReaderAnswer> read_answer(int fd, const std::string& path,
                                             const core::MemoryBudget& memory) {
     struct stat info {};
     GridReaderHeader h;
-    // Refused while anything can still write to it.
-    if (::fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0) return std::nullopt;
-    if (::fstat(fd, &info) != 0 || !read_at(fd, &h, sizeof h, 0)) return std::nullopt;
+    if (!seal(fd) || ::fstat(fd, &info) != 0 || !read_at(fd, &h, sizeof h, 0)) return std::nullopt;
     const auto size = std::uint64_t(info.st_size);
     if (h.magic != GridReaderHeader::expected_magic || h.text_size > grid_reader_max_text)
         return std::nullopt;
