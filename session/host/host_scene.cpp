@@ -73,7 +73,7 @@ HostScene::HostScene(HostSceneData data)
     calls.medium = fog_, calls.bounds = data_.bounds;
     for (const HostLamp& lamp : data_.lamps) {
         if (!std::isfinite(glm::dot(lamp.position, lamp.position)))
-            throw core::InputError("the position of a lamp is finite");
+            throw core::InputError("the position of a lamp is not finite");
         calls.emitters.push_back(lights::make_point_light(lamp.position, lamp.intensity));
     }
     scene_.emplace(std::move(calls));

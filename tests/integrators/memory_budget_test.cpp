@@ -63,5 +63,6 @@ TEST_CASE("Methods refuse what exceeds the budget, and name it", "[memory]") {
     }
     const auto scene = scene_from(box(grey, ""), 4);
     CHECK(refusal(*scene, "mote_micro_rendering", "", 1e5).find("65536 points") != std::string::npos);
+    CHECK(refusal(*scene, "mote_upbp", "", 2000.0).find("subpaths fit") != std::string::npos);
     CHECK(refusal(*scene, "mote_vpl", R"(<selection type="lightcuts"/>)", 1e9).empty());
 }
