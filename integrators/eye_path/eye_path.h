@@ -211,9 +211,6 @@ class EyePath {
     /// Density of its directions over that without a guide. Times the throughput it is what surfaces and
     /// media let through, which roulette follows: throughput alone is low towards bright light.
     float guide_ratio_ = 1.0f;
-    /// A path whose directions the guide chose so much more seldom is guided no further: each vertex may
-    /// double its weight against that of an unguided one, and long paths would become fireflies.
-    static constexpr float min_guide_ratio = 0.25f;
     float first_cosine_ = 1.0f, segment_length_ = 0.0f, passed_ = 0.0f;
 };
 
@@ -263,7 +260,7 @@ bool EyePath<Media>::arrive_by(const Walk& walk, const core::WalkEvent& event, T
         scatterings_ == limits_.max_scatterings || core::is_black(weights_.throughput))
         return false;
     vertex_ = make_vertex(event, ray_), segment_length_ = event.distance;
-    if (guide_ratio_ < min_guide_ratio)
+    if (guide_ratio_ < lights::min_guide_ratio)
         guided_.empty = true;
     else
         guide_.find(vertex_, guided_);

@@ -19,7 +19,7 @@ class PathEstimator final : public Estimator {
         : scene_(scene), settings_(settings), loop_(scene, options) {
         settings_.limits.wanted = options.cells;
         if (settings_.guiding.mode != Guiding::off) train(options);
-        if (!Media && !guide_ && WavefrontScene::suits(scene, settings_))
+        if (!Media && WavefrontScene::suits(scene, settings_))
             wavefront_.emplace(scene, settings_.limits);
     }
 
@@ -28,7 +28,7 @@ class PathEstimator final : public Estimator {
         const EyePacketSettings eye{.limits = settings_.limits, .guide = guide};
         return loop_.run(context, image, eye, [&](EyeTask<Media>& task) {
             if (wavefront_) {
-                Wavefront paths(*wavefront_, task.walk());
+                Wavefront paths(*wavefront_, task.walk(), guide);
                 task.trace_all(paths);
                 return;
             }

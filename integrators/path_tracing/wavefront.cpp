@@ -13,13 +13,6 @@ namespace {
 /// Multiple of a vector's lanes that holds `count`, for loops without a remainder.
 int padded(int count) { return (count + 15) / 16 * 16; }
 
-/// Light passes from wi to wo only where the shading and the geometric normal agree on their sides
-/// (ScatteringVertex::eval()), and Lambertian reflection only on one side. Above 0: it does.
-float reflects(float shading_o, float shading_i, float geometric_o, float geometric_i) {
-    const float shading = shading_o * shading_i;
-    return min_of(shading, geometric_o * geometric_i * shading);
-}
-
 std::optional<lights::LitParallelogram> only_parallelogram(const Scene& scene) {
     const auto* light = dynamic_cast<const lights::ParallelogramLight*>(scene.only_light());
     return light ? light->parallelogram() : std::nullopt;
@@ -34,9 +27,16 @@ bool WavefrontScene::suits(const Scene& scene, const PathSettings& settings) {
     return !scene.has_panes() && !settings.limits.hide_emitters && std::isinf(settings.bound);
 }
 
-Wavefront::Wavefront(const WavefrontScene& shared, WalkContext& context)
-    : shared_(shared), scene_(shared.scene), limits_(shared.limits), context_(context) {
+Wavefront::Wavefront(const WavefrontScene& shared, WalkContext& context, const lights::ScatteringGuide& guide)
+    : shared_(shared),
+      scene_(shared.scene),
+      limits_(shared.limits),
+      context_(context),
+      guide_(guide),
+      guided_(&guide != &lights::no_guide()) {
     samplers_.reserve(capacity), rngs_.reserve(capacity), sums_.reserve(capacity);
+    std::fill_n(own_probability_.value, capacity, 1.0f), std::fill_n(next_weight_.value, capacity, 1.0f);
+    if (guided_) lobes_.resize(capacity);
 }
 
 void Wavefront::start(const EyeRay& eye) {
@@ -45,6 +45,7 @@ void Wavefront::start(const EyeRay& eye) {
     samplers_.push_back(eye.sampler), rngs_.push_back(eye.rng), sums_.emplace_back();
     path_[i] = i, rays_.set(i, eye.ray);
     throughput_.set(i, Rgb(1.0f)), inverse_pdf_[i] = 0.0f, eta_[i] = 1.0f, scatterings_[i] = 0;
+    guide_ratio_[i] = 1.0f;
 }
 
 void Wavefront::run() {
@@ -54,8 +55,10 @@ void Wavefront::run() {
         context_.rays.closest += std::uint64_t(rays_.count);
         scene_.rays().closest(rays_, depth_ == 1, hits_);
         arrive();
+        if (guided_) find_guides();
         connect();
         sample_lambertian();
+        if (guided_) sample_guides();
         leave();
     }
 }
@@ -128,6 +131,7 @@ void Wavefront::connect() {
     else
         for (int i = 0; i < rays_.count; ++i)
             if (kind_[i] == Kind::lambertian && connects_[i]) sample_light_of(i);
+    if (guided_) weight_guides_to_lights();
     weight_lambertian();
     if (any_other_)
         for (int i = 0; i < rays_.count; ++i)
@@ -177,7 +181,8 @@ void Wavefront::weight_lambertian() {
             reflects(-glm::dot(ns, towards), cosine, -glm::dot(ng, towards), glm::dot(ng, wi));
         const float pdf = std::fabs(cosine) * inv_pi;
         // Veach 1997, Eq. 9.8, with f C* = reflectance pdf
-        const float weight = sides > 0.0f ? pdf / (pdf_light_[i] + finds_light_[i] * pdf) : 0.0f;
+        const float pdf_scatter = own_probability_[i] * pdf + guide_to_light_[i];
+        const float weight = sides > 0.0f ? pdf / (pdf_light_[i] + finds_light_[i] * pdf_scatter) : 0.0f;
         connected_.set(i, throughput_.get(i) * reflectance_.get(i) * radiance_.get(i) * weight);
         const Vec3 origin = offset_origin(hits_.position.get(i), ng, hits_.error[i], wi);
         shadow_origin_.set(i, origin);
@@ -191,6 +196,8 @@ void Wavefront::connect_other(int i) {
     const LightChoice choice = scene_.choose_light(vertex.light_receiver(), u_light_[i]);
     connects_[i] = lights::begin_connection(vertex, choice, {u_light_x_[i], u_light_y_[i]}, {}, false, c);
     if (!connects_[i]) return;
+    if (!c.light.delta)
+        c.pdf_scatter = lights::guided_pdf(lobes(i), c.light.wi, c.pdf_scatter, c.light.line_density);
     PathWeights weights;
     weights.throughput = throughput_.get(i);
     connected_.set(i, lights::finish_connection<false>(scene_, vertex, weights, {}, c, context_, {}));
@@ -250,19 +257,22 @@ bool Wavefront::survives(int i) {
     PathWeights weights;
     weights.throughput = throughput_.get(i);
     const float u = rngs_[std::size_t(path_[i])].next_float();
-    if (!integrators::survives<false>(weights, sqr(eta_[i]), depth_, u)) return false;
+    if (!integrators::survives<false>(weights, sqr(eta_[i]) * guide_ratio_[i], depth_, u)) return false;
     throughput_.set(i, weights.throughput);
     return true;
 }
 
 bool Wavefront::sample_other(int i) {
     const ScatteringVertex& vertex = others_[std::size_t(i)];
-    const auto next = vertex.sample(u_lobe_[i], {u_scatter_x_[i], u_scatter_y_[i]}, TransportMode::radiance);
-    if (!next) return false;
+    const auto guided = lights::sample_guided(vertex, lobes(i), u_lobe_[i],
+                                              {u_scatter_x_[i], u_scatter_y_[i]}, TransportMode::radiance);
+    if (!guided) return false;
+    const ScatterSample* const next = &guided->scattering;
     scatterings_[i] += !next->delta || scatterings_[i] > 0;
     const bool found_alone = next->delta || !(next->pdf_solid_angle > 0.0f);
     inverse_pdf_[i] = found_alone ? 0.0f : 1.0f / next->pdf_solid_angle;
     throughput_.set(i, throughput_.get(i) * next->weight), eta_[i] *= next->eta;
+    guide_ratio_[i] *= guided->pdf_ratio;
     next_direction_.set(i, next->wi), next_origin_.set(i, vertex.ray_origin(next->wi));
     return true;
 }
@@ -278,7 +288,8 @@ void Wavefront::leave() {
         } else {
             if (!(next_pdf_[i] > 0.0f)) continue;
             ++scatterings_[i], inverse_pdf_[i] = 1.0f / next_pdf_[i];
-            throughput_.set(i, throughput_.get(i) * reflectance_.get(i));
+            throughput_.set(i, throughput_.get(i) * reflectance_.get(i) * next_weight_[i]);
+            guide_ratio_[i] *= min_of(1.0f / next_weight_[i], lights::max_pdf_ratio);
         }
         if (!is_black(throughput_.get(i))) move(i, alive++);
     }
@@ -291,6 +302,7 @@ void Wavefront::move(int from, int to) {
     path_[to] = path_[from], scatterings_[to] = scatterings_[from];
     throughput_.set(to, throughput_.get(from));
     inverse_pdf_[to] = inverse_pdf_[from], eta_[to] = eta_[from];
+    guide_ratio_[to] = guide_ratio_[from];
 }
 
 }  // namespace mote::integrators

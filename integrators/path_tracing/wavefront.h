@@ -33,7 +33,9 @@ class Wavefront {
   public:
     static constexpr int capacity = core::RayBatch::capacity;  ///< paths
 
-    Wavefront(const WavefrontScene& shared, core::WalkContext& context);
+    /// All must outlive it.
+    Wavefront(const WavefrontScene& shared, core::WalkContext& context,
+              const lights::ScatteringGuide& guide = lights::no_guide());
     /// Removes all paths.
     void clear() { rays_.count = 0; }
     /// Adds a path.
@@ -51,6 +53,11 @@ class Wavefront {
         float operator[](int i) const { return value[i]; }
     };
 
+    // wavefront_guiding.cpp:
+    void find_guides();
+    void weight_guides_to_lights();
+    void sample_guides();
+
     void arrive();
     core::Rgb found_light(int i) const;
     void make_vertex(int i);
@@ -67,6 +74,7 @@ class Wavefront {
     bool wants_more(int i) const;
     void move(int from, int to);
     core::LightReceiver receiver(int i) const;
+    const lights::VmfMixture& lobes(int i) const;
     core::Vec3 wo(int i) const { return -rays_.direction.get(i); }
     Transport layer_of_connection(int i) const { return transport_layer(scatterings_[i] + 1, true); }
 
@@ -74,6 +82,8 @@ class Wavefront {
     const core::Scene& scene_;
     const EyePathLimits& limits_;
     core::WalkContext& context_;
+    const lights::ScatteringGuide& guide_;
+    bool guided_;    ///< false: `guide_` guides nothing
     int depth_ = 0;  ///< edges of all paths so far
 
     // By path number:
@@ -95,10 +105,18 @@ class Wavefront {
     core::HitBatch hits_;
     Kind kind_[capacity];
     Vectors reflectance_;                         ///< of Lambertian surfaces
+    core::ScatteringVertex vertex_;               ///< the one that the guide is queried for
     std::vector<core::ScatteringVertex> others_;  ///< on other materials; empty before the first of them
     bool any_other_ = false;
     Numbers u_lobe_, u_light_, u_light_x_, u_light_y_, u_scatter_x_, u_scatter_y_;
     bool connects_[capacity];  ///< next-event estimation is wanted
+
+    // By lane, of guided paths; without, as they are here:
+    std::vector<lights::VmfMixture> lobes_;  ///< directions of the guide at the vertices
+    Numbers guide_ratio_;                    ///< density of the path's directions over that without a guide
+    Numbers own_probability_;                ///< of a direction by the BSDF; the rest are the guide's
+    Numbers guide_to_light_;  ///< density of the guide's choice of the sampled light's direction
+    Numbers next_weight_;     ///< density of the next direction by the BSDF over that of both
 
     // By lane, of connections:
     Vectors to_light_, radiance_;

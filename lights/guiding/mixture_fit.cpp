@@ -133,16 +133,26 @@ MixtureFit MixtureFit::moved_to(const Vec3& pivot) const {
         moved.sums_[k].inverse_distance = sums_[k].weight * double(seen.inverse_distance);
         moved.sums_[k].direction = glm::length(sums_[k].direction) * Vec3d(lobe.mean);
     }
+    moved.mixture_.empty = mixture_.empty;
     return moved;
 }
 
 VmfMixture MixtureFit::at(const Vec3& position) const {
-    VmfMixture seen = mixture_;
-    seen.empty = !(light() > 0.0);
-    if (seen.empty) return seen;
+    VmfMixture seen;
+    if (mixture_.empty) return seen;
+    seen = mixture_;
+    // by_parallax() of each lobe, without a branch
+    const Vec3 moved = pivot_ - position;
+    MOTE_INDEPENDENT_LANES
     for (int k = 0; k < lobe_count; ++k) {
-        const Vec3 mean = by_parallax({mixture_.lobe(k).mean, distances_[k]}, pivot_, position).direction;
-        seen.x[k] = mean.x, seen.y[k] = mean.y, seen.z[k] = mean.z;
+        const float x = seen.x[k] + moved.x * distances_[k], y = seen.y[k] + moved.y * distances_[k],
+                    z = seen.z[k] + moved.z * distances_[k];
+        const float squared = x * x + y * y + z * z;
+        const bool apart = (squared > 1e-6f) & (squared < core::infinity);
+        const float scale = 1.0f / std::sqrt(squared);
+        seen.x[k] = apart ? x * scale : seen.x[k];
+        seen.y[k] = apart ? y * scale : seen.y[k];
+        seen.z[k] = apart ? z * scale : seen.z[k];
     }
     return seen;
 }

@@ -29,7 +29,7 @@ struct GuidingSample {
 class MixtureFit {
   public:
     /// An even mixture, as seen from `pivot`.
-    explicit MixtureFit(const core::Vec3& pivot) : pivot_(pivot) {}
+    explicit MixtureFit(const core::Vec3& pivot) : pivot_(pivot) { mixture_.empty = true; }
 
     /// A batch of samples, in their order. Weights of zero count as samples without light.
     void add(std::span<const GuidingSample> samples);

@@ -15,7 +15,7 @@ class NoGuide final : public ScatteringGuide {
 
 GuidedSample weighted(ScatterSample s, const Rgb& f_cos, float own_pdf, float pdf) {
     s.weight = f_cos / pdf, s.pdf_solid_angle = pdf;
-    return {s, std::min(pdf / own_pdf, 1e6f)};
+    return {s, std::min(pdf / own_pdf, max_pdf_ratio)};
 }
 
 }  // namespace

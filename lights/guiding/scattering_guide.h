@@ -25,6 +25,13 @@ const ScatteringGuide& no_guide();
 /// Probability that a guide chooses the direction, where it has lobes.
 inline constexpr float guide_probability = 0.5f;
 
+/// A path whose directions the guide chose so much more seldom than the vertices is guided no further: each
+/// vertex may double its weight against that of an unguided one, and long paths would become fireflies.
+inline constexpr float min_guide_ratio = 0.25f;
+
+/// Bound of GuidedSample::pdf_ratio, where a direction of the guide is hardly one of the vertex.
+inline constexpr float max_pdf_ratio = 1e6f;
+
 /// Density of a direction [1/sr] whose density by the vertex alone is `own_pdf`. `factor`: densities count
 /// times this (DirectSample::line_density).
 inline float guided_pdf(const VmfMixture& lobes, const core::Vec3& wi, float own_pdf, float factor = 1.0f) {
@@ -35,7 +42,7 @@ inline float guided_pdf(const VmfMixture& lobes, const core::Vec3& wi, float own
 /// A direction that a vertex and its guide chose.
 struct GuidedSample {
     core::ScatterSample scattering;  ///< its weight and density are those of both together
-    /// Density of the direction over its density by the vertex alone; at most 1e6.
+    /// Density of the direction over its density by the vertex alone; at most max_pdf_ratio.
     float pdf_ratio = 1.0f;
 };
 /// ScatteringVertex::sample() with the guide's lobes; nothing where the path ends.

@@ -21,6 +21,10 @@ namespace {
 const std::string volpath = R"(<integrator type="volpath"/>)";
 const std::string equiangular =
     R"(<integrator type="volpath"><boolean name="equiangular" value="true"/></integrator>)";
+const std::string guided =
+    R"(<integrator type="volpath"><string name="guiding" value="on"/><integer name="guiding_passes" value="3"/>
+    <integer name="guiding_paths" value="256"/>
+    <float name="guiding_leaf_samples" value="200"/></integrator>)";
 const std::string vpl = R"(<integrator type="mote_vpl"><integer name="paths" value="16"/></integrator>)";
 const std::string unbounded_vpl =
     R"(<integrator type="mote_vpl"><integer name="paths" value="16"/><float name="bound" value="-1"/></integrator>)";
@@ -60,10 +64,12 @@ std::string grid_medium(const std::string& path, const media::VolFile& file, dou
 
 void check_furnace(const std::string& content, const std::string& name, std::uint32_t passes = 20) {
     const auto scene = scene_from(scene_of(white + content), 4);
-    const auto render = render_statistics(*scene, *integrator_from(volpath), {4, passes, 7});
-    INFO(name);
-    check_mean_is(render, "beauty", 1.0);
-    CHECK(render.non_finite == 0);
+    for (const std::string& integrator : {volpath, guided}) {
+        const auto render = render_statistics(*scene, *integrator_from(integrator), {4, passes, 7});
+        INFO(name << ", " << integrator);
+        check_mean_is(render, "beauty", 1.0);
+        CHECK(render.non_finite == 0);
+    }
 }
 
 media::VolFile checkerboard() {
@@ -102,7 +108,7 @@ TEST_CASE("grids without density, of one voxel, and of steps render finite pictu
                                     checkerboard(), step_of_a_million()};
     for (const media::VolFile& grid : grids)
         for (const double albedo : {0.0, 1.0})
-            for (const std::string& integrator : {volpath, vpl, photons}) {
+            for (const std::string& integrator : {volpath, guided, vpl, photons}) {
                 const auto scene = scene_from(box(grey, grid_medium(file, grid, albedo)), 4);
                 const auto render = render_statistics(*scene, *integrator_from(integrator), {4, 2, 3});
                 INFO(integrator << ", albedo " << albedo);
@@ -156,7 +162,7 @@ TEST_CASE("a grid without density is no medium", "[media][extremes]") {
     const auto empty = vol_grid(glm::ivec3(4), 1, [](int, int, int) { return core::Rgb(0.0f); });
     const auto with = scene_from(box(grey, grid_medium(folder.file("empty.vol"), empty, 0.9)), 8);
     const auto without = scene_from(box(grey, ""), 8);
-    for (const std::string& integrator : {volpath, vpl}) {
+    for (const std::string& integrator : {volpath, guided, vpl}) {
         const auto a = render_statistics(*with, *integrator_from(integrator), {4, 200, 3});
         const auto b = render_statistics(*without, *integrator_from(integrator), {4, 200, 4});
         INFO(integrator);
@@ -204,7 +210,7 @@ TEST_CASE("a light in the medium at the camera, and cameras between media, stay 
         R"(<shape type="sphere"><point name="center" x="0.1" y="0.2" z="-0.3"/><float name="radius" value="0.01"/>
             <boolean name="flip_normals" value="true"/><emitter type="area"/></shape>)"};
     for (const std::string& light : lights)
-        for (const std::string& integrator : {volpath, equiangular, vpl, unbounded_vpl, photons}) {
+        for (const std::string& integrator : {volpath, equiangular, guided, vpl, unbounded_vpl, photons}) {
             const auto scene = scene_from(
                 scene_of(light + cube_of(homogeneous(1.5, 0.9, 0.3)) + camera("0.1, 0.2, -0.3", "0, 0, 1")),
                 4);
@@ -278,8 +284,9 @@ TEST_CASE("the picture does not depend on the unit of length", "[media][extremes
     const auto smoke = folder.file("smoke.vol");
     media::write_vol_file(smoke, random_grid(glm::ivec3(12), 1, 5));
     for (const std::string& grid : {std::string(), smoke})
-        for (const std::string& integrator : {volpath, vpl, photons}) {
-            const std::uint32_t passes = integrator == volpath ? 800 : integrator == vpl ? 80 : 40;
+        for (const std::string& integrator : {volpath, guided, vpl, photons}) {
+            const bool paths = integrator == volpath || integrator == guided;
+            const std::uint32_t passes = paths ? 800 : integrator == vpl ? 80 : 40;
             const auto picture = [&](double scale, std::uint64_t seed) {
                 return render_statistics(*scaled_room(scale, grid), *integrator_from(integrator),
                                          {4, passes, seed});

@@ -136,6 +136,10 @@ std::vector<std::string> all_integrators() {
     std::vector<std::string> all;
     for (const std::string& type : registry().types(Category::integrator))
         all.push_back(fmt::format(R"(<integrator type="{}">{}</integrator>)", type, quick_settings(type)));
+    all.emplace_back(
+        R"(<integrator type="volpath"><string name="guiding" value="on"/><integer name="guiding_passes" value="3"/>
+        <integer name="guiding_paths" value="256"/>
+        <float name="guiding_leaf_samples" value="200"/></integrator>)");
     for (const char* part : {R"(<compensation name="compensation" type="approximate"/>)",
                              R"(<compensation name="compensation" type="exact"/>)",
                              R"(<visibility name="visibility" type="shadow_map"/>)",

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/render/render_driver.h"
+#include "integrators/path_tracing/guided_paths.h"
 #include "integrators/path_tracing/wavefront.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
@@ -54,7 +55,7 @@ void compare_sums(TransportSum a, TransportSum b, Comparison& found) {
     ++found.paths, found.differ += !same;
 }
 
-Comparison compare(const Scene& scene, const EyePathLimits& limits) {
+Comparison compare(const Scene& scene, const EyePathLimits& limits, const lights::ScatteringGuide& guide) {
     const RenderOptions options{.seed = 7, .width = size, .height = size};
     const PathSettings settings{limits};
     REQUIRE(WavefrontScene::suits(scene, settings));
@@ -62,8 +63,9 @@ Comparison compare(const Scene& scene, const EyePathLimits& limits) {
     const auto filter = make_pixel_filter("box", 0.5f, 0.5f);
     const std::atomic<bool> cancelled{false};
     WalkContext walk;
-    const auto wavefront = std::make_unique<Wavefront>(shared, walk);
-    const auto packet = std::make_unique<EyePacket<false>>(scene, EyePacketSettings{limits}, walk);
+    const auto wavefront = std::make_unique<Wavefront>(shared, walk, guide);
+    const auto packet =
+        std::make_unique<EyePacket<false>>(scene, EyePacketSettings{.limits = limits, .guide = guide}, walk);
     Comparison found;
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         const PassContext context{pass, *filter, cancelled};
@@ -83,13 +85,16 @@ Comparison compare(const Scene& scene, const EyePathLimits& limits) {
 
 /// A rounding that makes a ray meet another surface, or a path survive, changes a path: less than one in a
 /// hundred does.
-void check_same(const std::string& xml, const EyePathLimits& limits = {}) {
-    const auto scene = scene_from(xml, size);
-    const Comparison found = compare(*scene, limits);
+void check_same(const Scene& scene, const EyePathLimits& limits, const lights::ScatteringGuide& guide) {
+    const Comparison found = compare(scene, limits, guide);
     INFO(found.differ << " of " << found.paths << " paths differ; " << found.wavefront << " against "
                       << found.packets);
     CHECK(found.packets > 0.0);
     CHECK(found.differ * 100 < found.paths);
+}
+void check_same(const std::string& xml, const EyePathLimits& limits = {}) {
+    const auto scene = scene_from(xml, size);
+    check_same(*scene, limits, lights::no_guide());
 }
 
 }  // namespace
@@ -110,4 +115,18 @@ TEST_CASE("a wavefront ends where limits say so", "[integrators]") {
     check_same(xml, {.wanted = Transport::direct});
     check_same(xml, {.wanted = Transport::indirect});
     check_same(xml, {.wanted = Transport::emission | Transport::indirect});
+}
+
+TEST_CASE("a wavefront of guided paths follows those of packets", "[integrators][guiding]") {
+    for (const std::string& xml : {furnished(grey, textured_card + matt_ball),
+                                   furnished(mixed, more_lights + glass_ball + textured_card)}) {
+        const auto scene = scene_from(xml, size);
+        const RenderOptions options{.seed = 7, .width = size, .height = size};
+        PathSettings settings;
+        settings.guiding = {.mode = Guiding::on, .passes = 7, .paths = 4096, .leaf_samples = 500.0};
+        SharedCounters counters;
+        const auto guide = train_guide<false>(*scene, options, settings, counters);
+        REQUIRE_FALSE(guide->surfaces().at(Vec3(0.0f)).empty);
+        check_same(*scene, {}, *guide);
+    }
 }
