@@ -2,12 +2,12 @@
 """Guided paths against unguided ones: variance times time, training included.
 
 Usage: guiding.py [--mote build/release/bin/mote] [--seconds 120] [--seeds 4] [--size 320x200] [--scenes NAME,...]
-                  [--set NAME=VALUE ...] [--quick]
+                  [--guiding on|automatic] [--threads N] [--set NAME=VALUE ...] [--quick]
 Every scene is rendered for the same time with `guiding` off and on (--set adds settings of the guided renders), with
 several seeds. The variance is that between seeds, relative and weighted as the error of docs/testing.md, Eq. 1, with the mean
 of 9 x 9 pixels in the weight: a bright path in a pixel's own mean would hide the variance that it makes. `trimmed` leaves
 out the hundredth of pixels with most of it, where a bright path decides. A gain above 1: guiding pays. The last
-column is the share of the time that training took. Run it on an idle machine.
+columns are the share of the time that training took, and of the renders that were guided. Run it on an idle machine.
 """
 import argparse
 import json
@@ -35,15 +35,16 @@ def render(args, scene, seed, settings, folder):
     width, height = args.size.split("x")
     defined = [f"resx={width}", f"resy={height}", *settings]
     stop = ["--passes", args.passes] if args.passes else ["--time", args.seconds]
-    subprocess.run([args.mote, "render", ROOT / SCENES[scene], "--integrator", "volpath", "--quiet", "--seed", seed,
+    threads = ["--threads", args.threads] if args.threads else []
+    subprocess.run([args.mote, "render", ROOT / SCENES[scene], "--integrator", "volpath", "--quiet", "--seed", seed, *threads,
                     *(word for d in defined for word in ("-D", d)), *stop, "-o", exr, "--stats", stats],
                    check=True)
     return read_exr(exr)[""], json.loads(stats.read_text())
 
 
 def measure(args, scene, settings, folder):
-    """Pictures, mean seconds of one, mean passes, and the share of time that training took."""
-    pictures, seconds, passes, training = [], [], [], []
+    """Pictures, mean seconds of one, mean passes, the share of time that training took, and of guided renders."""
+    pictures, seconds, passes, training, guided = [], [], [], [], []
     for seed in range(1, args.seeds + 1):
         picture, stats = render(args, scene, str(seed), settings, folder)
         taken = stats["seconds"]
@@ -51,7 +52,8 @@ def measure(args, scene, settings, folder):
         seconds.append(taken["build"] + taken["render"])
         passes.append(stats["passes"])
         training.append(taken.get("guiding", 0.0) / seconds[-1])
-    return np.stack(pictures), np.mean(seconds), np.mean(passes), np.mean(training)
+        guided.append(stats["values"].get("guided", 0.0))
+    return np.stack(pictures), np.mean(seconds), np.mean(passes), np.mean(training), np.mean(guided)
 
 
 def smoothed(picture, reach=4):
@@ -78,22 +80,24 @@ def main():
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--size", default="320x200")
     parser.add_argument("--scenes", default="smoke_room,atrium,fog,city,door_ajar,lamp_shade")
+    parser.add_argument("--guiding", default="on", choices=["on", "automatic"])
+    parser.add_argument("--threads")
     parser.add_argument("--set", nargs="*", default=[], help="settings of the guided renders: guiding_passes=63")
     parser.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
     args = parser.parse_args()
     if args.quick:
         args.passes, args.seeds, args.size, args.scenes = "2", 2, "16x10", "cornell_box,door_ajar"
         args.set = ["guiding_passes=3", "guiding_paths=256"]
-    print("scene: variance off, on; gain in variance (trimmed); in variance x seconds (trimmed); passes off, on; training")
+    print("scene: variance off, on; gain in variance (trimmed); in variance x seconds (trimmed); passes off, on; training; guided")
     with tempfile.TemporaryDirectory() as folder:
         for scene in args.scenes.split(","):
-            guided = ["integrator.guiding=on", *(f"integrator.{s}" for s in args.set)]
+            guided = [f"integrator.guiding={args.guiding}", *(f"integrator.{s}" for s in args.set)]
             runs = [measure(args, scene, settings, Path(folder)) for settings in (["integrator.guiding=off"], guided)]
             mean = np.concatenate([r[0] for r in runs]).mean(axis=0)
             off, on = (np.array(variance(r[0], mean)) for r in runs)
             gain, timed = off / on, off * runs[0][1] / (on * runs[1][1])
             print(f"{scene}: {off[0]:.4g}, {on[0]:.4g}; {gain[0]:.2f} ({gain[1]:.2f}); {timed[0]:.2f} ({timed[1]:.2f}); "
-                  f"{runs[0][2]:.0f}, {runs[1][2]:.0f}; {100 * runs[1][3]:.0f} %", flush=True)
+                  f"{runs[0][2]:.0f}, {runs[1][2]:.0f}; {100 * runs[1][3]:.0f} %; {100 * runs[1][4]:.0f} %", flush=True)
 
 
 if __name__ == "__main__":

@@ -15,17 +15,13 @@
 
 namespace mote::integrators {
 
-/// Traces the training paths; counters receive their rays. Throws Cancelled, and OutOfMemory.
+/// Traces the training paths; counters receive their rays. With Guiding::automatic, null where trials find
+/// that the guide does not pay (GuidingTrials): after a quarter of the training, which then ends, or after
+/// it. `ray_work`: cost of a guided ray in unguided ones. Throws Cancelled, and OutOfMemory.
 template <bool Media>
 std::unique_ptr<lights::LearnedGuide> train_guide(const core::Scene& scene,
                                                   const core::RenderOptions& options,
-                                                  const PathSettings& settings, SharedCounters& counters);
-
-/// True where the guide's directions leave less variance for the same counted work, by trial passes of both
-/// kinds over the same pixels. Depends on scene and seed alone. `work`: cost of a guided ray in unguided
-/// ones.
-template <bool Media>
-bool guide_pays(const core::Scene& scene, const core::RenderOptions& options, const PathSettings& settings,
-                const lights::ScatteringGuide& guide, double work, SharedCounters& counters);
+                                                  const PathSettings& settings, double ray_work,
+                                                  SharedCounters& counters);
 
 }  // namespace mote::integrators

@@ -19,8 +19,7 @@ class PathEstimator final : public Estimator {
         : scene_(scene), settings_(settings), loop_(scene, options) {
         settings_.limits.wanted = options.cells;
         if (settings_.guiding.mode != Guiding::off) train(options);
-        if (!Media && WavefrontScene::suits(scene, settings_))
-            wavefront_.emplace(scene, settings_.limits);
+        if (!Media && WavefrontScene::suits(scene, settings_)) wavefront_.emplace(scene, settings_.limits);
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
@@ -49,15 +48,11 @@ class PathEstimator final : public Estimator {
   private:
     void train(const RenderOptions& options) {
         const auto start = std::chrono::steady_clock::now();
-        guide_ = train_guide<Media>(scene_, options, settings_, loop_.counters());
-        if (settings_.guiding.mode == Guiding::automatic &&
-            !guide_pays<Media>(scene_, options, settings_, *guide_, guided_ray_work(), loop_.counters()))
-            guide_.reset();
+        guide_ = train_guide<Media>(scene_, options, settings_, guided_ray_work(), loop_.counters());
         training_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
-    /// Processor time of a guided path's ray over that of an unguided one: the guide's own, and what unguided
-    /// paths gain by wavefronts (docs/methods/guiding.md, "Cost").
-    double guided_ray_work() const { return !Media && WavefrontScene::suits(scene_, settings_) ? 2.2 : 1.1; }
+    /// Processor time of a guided path's ray over that of an unguided one (docs/methods/guiding.md, "Cost").
+    double guided_ray_work() const { return !Media && WavefrontScene::suits(scene_, settings_) ? 1.6 : 1.2; }
 
     const Scene& scene_;
     PathSettings settings_;

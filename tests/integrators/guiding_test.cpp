@@ -179,7 +179,7 @@ TEST_CASE("What is learned is where light comes from", "[guiding]") {
     integrators::PathSettings settings;
     settings.guiding = {integrators::Guiding::on, 7, 4096, 1000.0, 8.0};
     integrators::SharedCounters counters;
-    const auto guide = integrators::train_guide<false>(*scene, options, settings, counters);
+    const auto guide = integrators::train_guide<false>(*scene, options, settings, 1.6, counters);
     CHECK(guide->surfaces().leaves().size() > 10);
     CHECK(guide->media().leaves().empty());
     const lights::VmfMixture floor = guide->surfaces().at({-0.5f, -0.999f, 0.2f});

@@ -1,0 +1,82 @@
+#include "integrators/path_tracing/guiding_trials.h"
+
+#include "core/render/counted_work.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+template <bool Media>
+std::vector<float> GuidingTrials<Media>::light_of(const PassOfPaths& pass,
+                                                  const lights::ScatteringGuide& guide,
+                                                  SharedCounters& counters) {
+    std::vector<float> light(pass.paths);
+    trace_pass<Media>(scene_, options_, settings_, pass, guide, counters,
+                      [&](std::size_t, std::size_t first, EyePacket<Media>& packet) {
+                          trace_paths(scene_, settings_, packet);
+                          for (std::size_t i = 0; i < EyePacket<Media>::width && first + i < pass.paths; ++i)
+                              for (const Rgb& l : packet[int(i)].sum.light) light[first + i] += average(l);
+                      });
+    return light;
+}
+
+template <bool Media>
+auto GuidingTrials<Media>::trial(const lights::ScatteringGuide& guide, std::uint32_t begin) -> Trial {
+    const auto paths = std::size_t(std::max(16, settings_.guiding.paths / 4));
+    const auto layout = std::uint32_t(settings_.guiding.passes);
+    Trial result;
+    SharedCounters own;
+    for (std::uint32_t k = 0; k < passes; ++k)
+        result.light[k] = light_of({layout + begin + k, layout, paths}, guide, own);
+    Statistics statistics;
+    own.report(statistics, Media), counters_.add(own);
+    result.work = counted_work(statistics);
+    return result;
+}
+
+template <bool Media>
+double GuidingTrials<Media>::Trial::variance(std::size_t path) const {
+    double sum = 0.0, squares = 0.0;
+    for (const auto& l : light) sum += double(l[path]), squares += sqr(l[path]);
+    return std::max(0.0, squares - sum * sum / passes) / (passes - 1.0);
+}
+
+/// Variances of both kinds over the squared mean around each path. That is taken from a run of neighbouring
+/// paths: from those of a pixel alone, a bright one would hide itself.
+template <bool Media>
+std::array<double, 2> GuidingTrials<Media>::relative_variances(const Trial& plain, const Trial& guided) {
+    constexpr std::size_t run = 256;
+    std::vector<std::array<double, 3>> runs;  // mean of both kinds, variances
+    for (std::size_t first = 0; first < plain.light.front().size(); first += run) {
+        const std::size_t end = std::min(first + run, plain.light.front().size());
+        auto& [mean, without, with] = runs.emplace_back();
+        for (std::size_t i = first; i < end; ++i) {
+            for (std::uint32_t k = 0; k < passes; ++k)
+                mean += double(plain.light[k][i]) + double(guided.light[k][i]);
+            without += plain.variance(i), with += guided.variance(i);
+        }
+        mean /= 2.0 * passes * double(end - first);
+    }
+    double whole = 0.0;
+    for (const auto& r : runs) whole += r[0] / double(runs.size());
+    std::array<double, 2> sums{};
+    for (const auto& [mean, without, with] : runs) {
+        if (!(mean > 0.0)) continue;
+        const double weight = 1.0 / (mean * mean + 0.01 * whole * whole);
+        sums[0] += weight * without, sums[1] += weight * with;
+    }
+    return sums;
+}
+
+template <bool Media>
+bool GuidingTrials<Media>::pays(const lights::ScatteringGuide& guide) {
+    if (plain_.light.front().empty()) plain_ = trial(lights::no_guide(), 0);
+    const Trial guided = trial(guide, passes);
+    const auto [without, with] = relative_variances(plain_, guided);
+    return with * guided.work * ray_work_ < without * plain_.work;
+}
+
+template class GuidingTrials<true>;
+template class GuidingTrials<false>;
+
+}  // namespace mote::integrators
