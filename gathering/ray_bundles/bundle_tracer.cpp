@@ -1,6 +1,7 @@
 #include "gathering/ray_bundles/bundle_tracer.h"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include "core/geometry/mesh_checks.h"
 #include "core/objects/error.h"
@@ -41,7 +42,10 @@ BundleTracer::BundleTracer(const SurfaceTriangles& triangles) : triangles_(trian
 BundleTracer::~BundleTracer() = default;
 
 const RayForm& BundleTracer::ray_form() const {
-    std::call_once(ray_form_once_, [&] { ray_form_ = std::make_unique<RayForm>(triangles_, bounds_); });
+    // Embree builds in parallel; isolated, so that this thread is not given a task that waits for the form.
+    std::call_once(ray_form_once_, [&] {
+        tbb::this_task_arena::isolate([&] { ray_form_ = std::make_unique<RayForm>(triangles_, bounds_); });
+    });
     return *ray_form_;
 }
 
