@@ -1,10 +1,11 @@
 // Training of guided paths: passes 1, 2, 4, ... of paths, which are themselves guided by what was learned
 // before.
 //
-// Training paths are none of the picture. Their random numbers follow from seed, pass and path number alone,
-// and their samples are learned in that order: the field depends on scene and seed, not on threads, and a
-// render that is resumed or shared out learns it again. Passes of the picture then are as independent of each
-// other as unguided ones.
+// The first passes are none of the picture: they are guided badly. Later ones are the picture's own, which a
+// guide learns from after each. It depends on scene, seed and the number of the pass alone, not on threads: a
+// render that is resumed or shared out traces the passes before once more. A pass is unbiased whatever
+// earlier ones have taught, so that the covariance of any two is zero, and their mean is that of unguided
+// ones.
 #pragma once
 
 #include <memory>
@@ -15,13 +16,45 @@
 
 namespace mote::integrators {
 
-/// Traces the training paths; counters receive their rays. With Guiding::automatic, null where trials find
-/// that the guide does not pay (GuidingTrials): after a quarter of the training, which then ends, or after
-/// it. `ray_work`: cost of a guided ray in unguided ones. Throws Cancelled, and OutOfMemory.
+/// Samples of paths of one task.
+struct GuideSamples {
+    std::vector<lights::GuidingSample> surfaces, media;  ///< of vertices there
+};
+
+/// A guide, and what it learns from.
 template <bool Media>
-std::unique_ptr<lights::LearnedGuide> train_guide(const core::Scene& scene,
-                                                  const core::RenderOptions& options,
-                                                  const PathSettings& settings, double ray_work,
-                                                  SharedCounters& counters);
+class GuideTraining {
+  public:
+    /// Traces the first training passes; counters receive their rays. With Guiding::automatic, paths are not
+    /// guided where trials find that it does not pay (GuidingTrials). `ray_work`: cost of a guided ray in
+    /// unguided ones. All must outlive it. Throws Cancelled, and OutOfMemory.
+    GuideTraining(const core::Scene& scene, const core::RenderOptions& options, const PathSettings& settings,
+                  double ray_work, SharedCounters& counters);
+
+    /// Null: paths are not guided.
+    const lights::LearnedGuide* guide() const { return guide_.get(); }
+    /// Passes of the picture that it has learned from.
+    std::uint32_t learned() const { return learned_; }
+    /// Passes of the picture that it learns from in all.
+    std::uint32_t picture_passes() const;
+    /// Whether the paths of a task are recorded in a pass of the picture: as many tasks as hold
+    /// GuidingSettings::paths.
+    bool records(std::uint32_t pass, std::size_t task) const;
+    /// Learns from the next pass of the picture, from its tasks in their order.
+    void learn(std::vector<GuideSamples>& tasks);
+    /// Forgets the picture's passes.
+    void restart();
+
+  private:
+    void train();
+    void learn_from(std::uint32_t pass, GuideSamples& samples);
+
+    const core::Scene& scene_;
+    core::RenderOptions options_;
+    const PathSettings& settings_;
+    SharedCounters& counters_;
+    std::unique_ptr<lights::LearnedGuide> guide_;
+    std::uint32_t learned_ = 0;
+};
 
 }  // namespace mote::integrators

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace mote::integrators {
 
 using namespace core;
@@ -13,8 +15,9 @@ const ParameterList<GuidingSettings>& guiding_rows() {
             {{"off", Guiding::off}, {"automatic", Guiding::automatic}, {"on", Guiding::on}},
             "Directions of paths also from a field of incident radiance, learned before the first pass; "
             "automatic: where trial passes find less noise for the same work."),
-        row("guiding_passes", &S::passes, at_least(1), "Training passes of guided paths."),
-        row("guiding_paths", &S::paths, at_least(16), "Paths of a training pass."),
+        row("guiding_passes", &S::passes, at_least(1),
+            "Training passes of guided paths; all but the first seven are passes of the picture."),
+        row("guiding_paths", &S::paths, at_least(16), "Paths of a training pass that are learned from."),
         row("guiding_leaf_samples", &S::leaf_samples, above(0),
             "A cell of the field is split once it has received more samples."),
         row("guiding_memory", &S::memory, above(0, "MiB"),
@@ -26,12 +29,11 @@ void plan_guiding(Plan& plan, const GuidingSettings& s) {
     if (s.mode == Guiding::off)
         plan.leave_out("guiding", "directions by BSDF and phase function alone", "guiding is off");
     else
-        plan.run(
-            "guiding",
-            fmt::format("{} training passes of {} paths before the first pass, none of them in the picture",
-                        s.passes, s.paths),
-            s.mode == Guiding::on ? "requested"
-                                  : "kept where trial passes find less noise for the same work");
+        plan.run("guiding",
+                 fmt::format("{0} training passes of {1} paths; all but the first {2} are the picture's own",
+                             s.passes, s.paths, std::min(s.passes, first_training_passes)),
+                 s.mode == Guiding::on ? "requested"
+                                       : "kept where trial passes find less noise for the same work");
 }
 
 }  // namespace mote::integrators

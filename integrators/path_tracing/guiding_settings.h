@@ -13,11 +13,14 @@ enum class Guiding : std::uint8_t { off, automatic, on };
 
 struct GuidingSettings {
     Guiding mode = Guiding::off;
-    int passes = 31;               ///< of training
-    int paths = 65536;             ///< of a training pass
+    int passes = 63;               ///< of training; all but the first seven are the picture's
+    int paths = 65536;             ///< of a training pass, that are learned from
     double leaf_samples = 8000.0;  ///< a leaf of the field with more is split
     double memory = 64.0;          ///< of the field [MiB]
 };
+
+/// Training passes that are none of the picture, 1, 2 and 4: later ones are worth more by far.
+inline constexpr int first_training_passes = 7;
 
 const core::ParameterList<GuidingSettings>& guiding_rows();
 

@@ -1,9 +1,9 @@
 #include "integrators/path_tracing/path_estimator.h"
 
-#include <chrono>
-
+#include "core/render/cpu_clock.h"
 #include "integrators/eye_path/image_loop.h"
 #include "integrators/path_tracing/guided_paths.h"
+#include "integrators/path_tracing/path_recorder.h"
 #include "integrators/path_tracing/wavefront.h"
 
 namespace mote::integrators {
@@ -18,47 +18,82 @@ class PathEstimator final : public Estimator {
     PathEstimator(const Scene& scene, const RenderOptions& options, const PathSettings& settings)
         : scene_(scene), settings_(settings), loop_(scene, options) {
         settings_.limits.wanted = options.cells;
-        if (settings_.guiding.mode != Guiding::off) train(options);
         if (!Media && WavefrontScene::suits(scene, settings_)) wavefront_.emplace(scene, settings_.limits);
+        if (settings_.guiding.mode == Guiding::off) return;
+        const Stopwatch stopwatch(training_seconds_);
+        training_.emplace(scene, options, settings_, guided_ray_work(), loop_.counters());
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
-        const lights::ScatteringGuide& guide = guide_ ? *guide_ : lights::no_guide();
-        const EyePacketSettings eye{.limits = settings_.limits, .guide = guide};
-        return loop_.run(context, image, eye, [&](EyeTask<Media>& task) {
-            if (wavefront_) {
-                Wavefront paths(*wavefront_, task.walk(), guide);
-                task.trace_all(paths);
-                return;
-            }
-            task.walk().all_boundaries = settings_.equiangular != nullptr;
-            task.for_each([&](const PacketPixels&) { trace_paths(scene_, settings_, task.packet()); });
-        });
+        const std::uint32_t learns = training_ ? training_->picture_passes() : 0;
+        if (learns == 0) return trace(context, image);
+        return catch_up(context, image, learns) &&
+               (context.index < learns ? trace_and_learn(context, image) : trace(context, image));
     }
     void add_statistics(Statistics& statistics) const override {
         loop_.add_statistics(statistics);
         if (settings_.guiding.mode == Guiding::off) return;
         statistics.seconds["guiding"] += training_seconds_;
-        statistics.values["guided"] = guide_ ? 1.0 : 0.0;
-        if (!guide_) return;
+        statistics.values["guided"] = guide() ? 1.0 : 0.0;
+        if (!guide()) return;
         statistics.values["guiding_leaves"] +=
-            double(guide_->surfaces().leaves().size() + guide_->media().leaves().size());
+            double(guide()->surfaces().leaves().size() + guide()->media().leaves().size());
     }
 
   private:
-    void train(const RenderOptions& options) {
-        const auto start = std::chrono::steady_clock::now();
-        guide_ = train_guide<Media>(scene_, options, settings_, guided_ray_work(), loop_.counters());
-        training_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const lights::LearnedGuide* guide() const { return training_ ? training_->guide() : nullptr; }
+    EyePacketSettings eye() const {
+        if (guide()) return {.limits = settings_.limits, .guide = *guide()};
+        return {.limits = settings_.limits};
+    }
+    bool trace(const PassContext& context, PassImage& image) {
+        return loop_.run(context, image, eye(), [&](EyeTask<Media>& task) {
+            if (wavefront_) {
+                Wavefront paths(*wavefront_, task.walk(), eye().guide);
+                task.trace_all(paths);
+            } else {
+                trace_packets(task, nullptr, nullptr);
+            }
+        });
+    }
+    void trace_packets(EyeTask<Media>& task, PathRecorder<Media>* recorder, GuideSamples* samples) {
+        task.walk().all_boundaries = settings_.equiangular != nullptr;
+        task.for_each([&](const PacketPixels&) {
+            trace_paths(scene_, settings_, task.packet(), recorder);
+            if (recorder) recorder->finish(task.packet(), samples->surfaces, samples->media);
+        });
+    }
+    bool trace_and_learn(const PassContext& context, PassImage& image) {
+        std::vector<GuideSamples> samples(loop_.tasks());
+        const bool done = loop_.run(context, image, eye(), [&](EyeTask<Media>& task) {
+            PathRecorder<Media> recorder;
+            const bool records = training_->records(context.index, task.index());
+            trace_packets(task, records ? &recorder : nullptr, &samples[task.index()]);
+        });
+        if (!done) return false;
+        const Stopwatch stopwatch(training_seconds_);
+        training_->learn(samples);
+        return true;
+    }
+    /// Learns from the picture's passes before this one that another run has traced.
+    bool catch_up(const PassContext& context, const PassImage& image, std::uint32_t learns) {
+        if (training_->learned() > std::min(context.index, learns)) training_->restart();
+        if (training_->learned() == std::min(context.index, learns)) return true;
+        PassImage none(image.width(), image.height(), image.layers());
+        for (; training_->learned() < std::min(context.index, learns); none.clear())
+            if (!trace_and_learn({training_->learned(), context.filter, context.cancelled, context.part},
+                                 none))
+                return false;
+        return true;
     }
     /// Processor time of a guided path's ray over that of an unguided one (docs/methods/guiding.md, "Cost").
-    double guided_ray_work() const { return !Media && WavefrontScene::suits(scene_, settings_) ? 1.6 : 1.2; }
+    double guided_ray_work() const { return wavefront_ ? 1.6 : 1.2; }
 
     const Scene& scene_;
     PathSettings settings_;
     std::optional<WavefrontScene> wavefront_;  ///< for scenes that it suits
     ImageLoop<Media> loop_;
-    std::unique_ptr<const lights::LearnedGuide> guide_;  ///< of guided paths
+    std::optional<GuideTraining<Media>> training_;  ///< of guided paths
     double training_seconds_ = 0.0;
 };
 

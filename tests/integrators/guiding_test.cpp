@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "core/render/pass_runner.h"
 #include "integrators/eye_path/image_loop.h"
 #include "integrators/path_tracing/guided_paths.h"
 #include "tests/integrators/test_scenes.h"
@@ -19,7 +20,7 @@ namespace {
 std::shared_ptr<const Integrator> paths(const std::string& type, const std::string& guiding,
                                         const std::string& more = "") {
     return integrator_from(fmt::format(
-        R"(<integrator type="{}"><string name="guiding" value="{}"/><integer name="guiding_passes" value="7"/>
+        R"(<integrator type="{}"><string name="guiding" value="{}"/><integer name="guiding_passes" value="39"/>
         <integer name="guiding_paths" value="2048"/><float name="guiding_leaf_samples" value="500"/>{}</integrator>)",
         type, guiding, more));
 }
@@ -179,7 +180,8 @@ TEST_CASE("What is learned is where light comes from", "[guiding]") {
     integrators::PathSettings settings;
     settings.guiding = {integrators::Guiding::on, 7, 4096, 1000.0, 8.0};
     integrators::SharedCounters counters;
-    const auto guide = integrators::train_guide<false>(*scene, options, settings, 1.6, counters);
+    const integrators::GuideTraining<false> training(*scene, options, settings, 1.6, counters);
+    const lights::LearnedGuide* const guide = training.guide();
     CHECK(guide->surfaces().leaves().size() > 10);
     CHECK(guide->media().leaves().empty());
     const lights::VmfMixture floor = guide->surfaces().at({-0.5f, -0.999f, 0.2f});
@@ -191,6 +193,32 @@ TEST_CASE("What is learned is where light comes from", "[guiding]") {
         up += floor.sample(u, rng.next_vec2()).y > 0.0f;
     }
     CHECK(up > 3200.0);
+}
+
+TEST_CASE("A pass is guided by the passes before it, whoever traces them", "[guiding]") {
+    const auto scene = scene_from(box(mixed, forward_fog), 16);
+    const RenderOptions options{.seed = 4, .width = 16, .height = 16};
+    const auto integrator = paths("volpath", "on");
+    const auto layers = integrator->layers(*scene).size();
+    const std::atomic<bool> cancelled{false};
+    const auto filter = film_filter(*scene);
+    const auto pass = [&](Estimator& estimator, std::uint32_t index) {
+        PassImage image(16, 16, layers);
+        REQUIRE(estimator.pass({index, *filter, cancelled}, image));
+        std::vector<Rgb> light;
+        for (std::size_t l = 0; l < layers; ++l)
+            light.insert(light.end(), image.layer(l).begin(), image.layer(l).end());
+        return light;
+    };
+    const auto in_order = integrator->prepare(*scene, options), alone = integrator->prepare(*scene, options);
+    std::vector<std::vector<Rgb>> expected;
+    for (std::uint32_t i = 0; i <= 40; ++i) expected.push_back(pass(*in_order, i));
+    for (const std::uint32_t i : {20u, 3u, 40u, 32u}) CHECK(pass(*alone, i) == expected[i]);
+    // What was learned from the picture's passes counts.
+    const auto first_only = integrator_from(
+        R"(<integrator type="volpath"><string name="guiding" value="on"/><integer name="guiding_passes" value="7"/>
+        <integer name="guiding_paths" value="2048"/><float name="guiding_leaf_samples" value="500"/></integrator>)");
+    CHECK_FALSE(pass(*first_only->prepare(*scene, options), 20) == expected[20]);
 }
 
 TEST_CASE("A black scene and a scene of mirrors have nothing to learn", "[guiding]") {

@@ -125,7 +125,8 @@ TEST_CASE("a wavefront of guided paths follows those of packets", "[integrators]
         PathSettings settings;
         settings.guiding = {.mode = Guiding::on, .passes = 7, .paths = 4096, .leaf_samples = 500.0};
         SharedCounters counters;
-        const auto guide = train_guide<false>(*scene, options, settings, 1.6, counters);
+        const GuideTraining<false> training(*scene, options, settings, 1.6, counters);
+        const lights::LearnedGuide* const guide = training.guide();
         REQUIRE_FALSE(guide->surfaces().at(Vec3(0.0f)).empty);
         check_same(*scene, {}, *guide);
     }
