@@ -37,8 +37,8 @@ class GuideTraining {
     std::uint32_t learned() const { return learned_; }
     /// Passes of the picture that it learns from in all.
     std::uint32_t picture_passes() const;
-    /// Whether the paths of a task are recorded in a pass of the picture: as many tasks as hold
-    /// GuidingSettings::paths.
+    /// True where the paths of a task are recorded in a pass of the picture: as many tasks as hold
+    /// GuidingSettings::paths, others in each pass.
     bool records(std::uint32_t pass, std::size_t task) const;
     /// Learns from the next pass of the picture, from its tasks in their order.
     void learn(std::vector<GuideSamples>& tasks);

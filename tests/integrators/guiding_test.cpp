@@ -195,7 +195,7 @@ TEST_CASE("What is learned is where light comes from", "[guiding]") {
     CHECK(up > 3200.0);
 }
 
-TEST_CASE("A pass is guided by the passes before it, whoever traces them", "[guiding]") {
+TEST_CASE("A pass is guided by the passes before it, in any order", "[guiding]") {
     const auto scene = scene_from(box(mixed, forward_fog), 16);
     const RenderOptions options{.seed = 4, .width = 16, .height = 16};
     const auto integrator = paths("volpath", "on");
@@ -214,7 +214,7 @@ TEST_CASE("A pass is guided by the passes before it, whoever traces them", "[gui
     std::vector<std::vector<Rgb>> expected;
     for (std::uint32_t i = 0; i <= 40; ++i) expected.push_back(pass(*in_order, i));
     for (const std::uint32_t i : {20u, 3u, 40u, 32u}) CHECK(pass(*alone, i) == expected[i]);
-    // What was learned from the picture's passes counts.
+    // It has learned from them.
     const auto first_only = integrator_from(
         R"(<integrator type="volpath"><string name="guiding" value="on"/><integer name="guiding_passes" value="7"/>
         <integer name="guiding_paths" value="2048"/><float name="guiding_leaf_samples" value="500"/></integrator>)");
