@@ -58,10 +58,12 @@ std::optional<PictureError> Film::error_of_groups() const {
         light = smoothed_mean(missing[0], missing[1], width_, height_);
         for (std::size_t p = 0; p < pixels(); ++p) picture[p] += light[p];
     }
-    const RelativeWeights of_mean = relative_weights(picture, variance, width_, height_);
-    const PictureError low = group_error(groups, missing, of_mean),
-                       high = group_error(groups, missing, weights_of_groups(groups, light));
-    return PictureError::of_both(low, high);
+    const auto error_by = [&](const RelativeWeights& weights) {
+        return group_error(groups, missing, weights);
+    };
+    return PictureError::of_all({error_by(relative_weights(picture, variance, width_, height_)),
+                                 error_by(weights_of_groups(groups, light)),
+                                 error_by(lower_weights(picture, variance, width_, height_))});
 }
 
 }  // namespace mote::core

@@ -120,7 +120,7 @@ std::optional<PictureError> Film::error_of_halves() const {
     const PictureError low =
         blocks(relative_weights(picture, shown_variance_of_mean(1.0), width_, height_)).of_picture();
     const PictureError high = blocks(weights_of_halves(a.shown, b.shown, width_, height_)).of_picture();
-    return PictureError::of_both(low, high);
+    return PictureError::of_all({low, high});
 }
 
 }  // namespace mote::core

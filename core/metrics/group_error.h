@@ -33,8 +33,9 @@
 //
 // Weights are relative to the light of a pixel, which is known with noise: by the mean of all passes a rare
 // splotch, or a lamp that few passes meet, would be taken for a bright place, where an error counts for
-// little; by the median over groups one that is bright by rare paths for a dark one. Film::error() states
-// what both kinds of weights make of it.
+// little; by the median over groups, or by its neighbours, one that is bright by rare paths for a dark one.
+// Film::error() states what three kinds of weights make of it: relative_weights(), weights_of_groups(), and
+// lower_weights(), by which the noise of no pixel exceeds its light.
 #pragma once
 
 #include <array>

@@ -53,9 +53,16 @@ double sum_of(const std::vector<double>& values) {
 
 }  // namespace
 
-PictureError PictureError::of_both(const PictureError& a, const PictureError& b) {
-    return {std::sqrt(0.5 * (a.error * a.error + b.error * b.error)), std::min(a.low, b.low),
-            std::max(a.high, b.high), std::max(a.rule_high, b.rule_high)};
+PictureError PictureError::of_all(std::initializer_list<PictureError> errors) {
+    PictureError result = *errors.begin();
+    double squares = 0.0;
+    for (const PictureError& e : errors) {
+        squares += e.error * e.error;
+        result.low = std::min(result.low, e.low), result.high = std::max(result.high, e.high);
+        result.rule_high = std::max(result.rule_high, e.rule_high);
+    }
+    result.error = std::sqrt(squares / double(errors.size()));
+    return result;
 }
 
 PictureError error_interval(const SquaredError& e) {

@@ -40,6 +40,7 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 #include <limits>
 #include <span>
 #include <vector>
@@ -60,8 +61,8 @@ struct PictureError {
     double high = std::numeric_limits<double>::infinity();   ///< end of the interval
     /// Upper end for a rule that is evaluated again and again, Eq. (5); nowhere below `high`.
     double rule_high = std::numeric_limits<double>::infinity();
-    /// One error from those by two kinds of weights: its interval holds both.
-    static PictureError of_both(const PictureError& a, const PictureError& b);
+    /// One error from those by several kinds of weights: its interval holds all of theirs.
+    static PictureError of_all(std::initializer_list<PictureError> errors);
 };
 
 /// Squared error in the measure of Eq. (2) of relative_error.h, before it is divided by the norm.

@@ -17,6 +17,10 @@ namespace {
 constexpr double certain_deviations = 3.0;
 constexpr double darkest_fraction = 0.01;  ///< (1 / 10)^2 in Eq. (1)
 
+void check_sizes(std::size_t a, std::size_t b) {
+    if (a != b) throw std::invalid_argument("the pictures differ in size");
+}
+
 double median_that_is_not_black(const std::vector<double>& squares) {
     std::vector<double> lit;
     std::copy_if(squares.begin(), squares.end(), std::back_inserter(lit), [](double s) { return s > 0.0; });
@@ -43,6 +47,8 @@ struct Smoothed {
 };
 
 Smoothed smoothed(std::span<const Rgb> picture, std::span<const Rgb> variance, int width, int height) {
+    check_sizes(picture.size(), variance.size());
+    check_sizes(picture.size(), std::size_t(width) * std::size_t(height));
     Smoothed s{std::vector<double>(picture.size()), std::vector<double>(picture.size())};
     tbb::parallel_for(0, height, [&](int y) {
         for (int x = 0; x < width; ++x) {
@@ -64,10 +70,6 @@ double variance_of_product(const Rgb& r, const Rgb& variance) {
                               std::fabs(double(r.z)) * std::sqrt(double(variance.z))) /
                              3.0;
     return deviation * deviation;
-}
-
-void check_sizes(std::size_t a, std::size_t b) {
-    if (a != b) throw std::invalid_argument("the pictures differ in size");
 }
 
 }  // namespace
@@ -94,14 +96,25 @@ RelativeWeights relative_weights(std::span<const Rgb> reference) {
 
 RelativeWeights relative_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,
                                  int width, int height) {
-    check_sizes(picture.size(), variance_of_mean.size());
-    check_sizes(picture.size(), std::size_t(width) * std::size_t(height));
     const Smoothed squares = smoothed(picture, variance_of_mean, width, height);
     RelativeWeights result{weights_of(squares.others, squares.all)};
     for (std::size_t p = 0; p < picture.size(); ++p) {
         result.norm += result.weight[p] * mean_square(picture[p]);
         result.noise_norm += result.weight[p] * squares.all[p];
     }
+    return result;
+}
+
+RelativeWeights lower_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean, int width,
+                              int height) {
+    Smoothed squares = smoothed(picture, variance_of_mean, width, height);
+    for (std::size_t p = 0; p < picture.size(); ++p)
+        squares.others[p] =
+            std::max(squares.others[p], mean_square(picture[p]) + mean_of_channels(variance_of_mean[p]));
+    RelativeWeights result{weights_of(squares.others, squares.all)};
+    for (std::size_t p = 0; p < picture.size(); ++p)
+        result.noise_norm += result.weight[p] * squares.others[p];
+    result.norm = result.noise_norm;
     return result;
 }
 

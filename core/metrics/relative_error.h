@@ -40,6 +40,13 @@ RelativeWeights relative_weights(std::span<const Rgb> reference);
 /// a size does not fit.
 RelativeWeights relative_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,
                                  int width, int height);
+/// Lower bounds of those weights: |r|^2 of a pixel is |c|^2 + v, its own with the variance v of its mean,
+/// where that is larger. Where rare bright paths make the light of dark surroundings, neighbours that had
+/// none are too dark. By these weights v is stated too small: k passes of light b in n make v of k (b / n)^2,
+/// so v / (|c|^2 + v) is 1 / (k + 1), whose mean is below the exact 1 / m, where k is Poisson's of mean m.
+/// Throws as relative_weights().
+RelativeWeights lower_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean, int width,
+                              int height);
 
 /// Eq. (1) of |r|^2 pixel by pixel, however it was found. 0 everywhere when all of it is black.
 std::vector<double> weights_of_squares(const std::vector<double>& squares);
