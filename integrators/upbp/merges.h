@@ -77,6 +77,7 @@ class Merges {
             z.weight = weight.advance_to(t);
             if (core::is_black(z.weight) || !weight.medium()) return;
             if (&weight.medium()->phase() != y.scattering.phase) return;
+            if (!wanted(v.index, z, beam.index)) return;
             move_on_beam(scene_, strategies_.eye_path(), beam, t, context_.tracking, z);
             copy_medium(y, z);
             const double kernel =
@@ -100,6 +101,7 @@ class Merges {
             BeamWeight light_weight(light.beam, merging.light_beams, context_);
             y.weight = light_weight.advance_to(hit.s);
             if (core::is_black(y.weight) || light_weight.medium() != medium) continue;
+            if (!wanted(light.beam.index, z, beam.index)) continue;
             z.scattering.phase = &medium->phase();
             move_on_beam(scene_, strategies_.eye_path(), beam, hit.t, context_.tracking, z);
             set_merges(strategies_.eye_path(), medium->coefficients(z.scattering.position), z);
@@ -136,17 +138,21 @@ class Merges {
         to.beam_beam_merges = from.beam_beam_merges;
     }
 
+    /// Merges of vertex i of a light path with vertex j of the eye path, z, find paths that are.
+    bool wanted(std::size_t i, const PathVertex& z, std::size_t j) const {
+        return strategies_.allowed(i, j + 1) && settings_.limits.wanted[Strategies<Media>::layer_of(i, z)];
+    }
+
     template <typename Found>
     void add(const Subpath& light, std::size_t i, const PathVertex& y, const PathVertex& z, std::size_t j,
              double kernel, const core::Rgb& factor, const Found& found) {
-        const Transport layer = Strategies<Media>::layer_of(i, z);
-        if (!strategies_.allowed(i, j + 1) || !settings_.limits.wanted[layer]) return;
+        if (!wanted(i, z, j)) return;
         const core::Rgb f = scattered(y, z);
         if (core::is_black(f)) return;
         const double over = weight_over_kernel(light, i, y, strategies_.eye_path(), j, z, kernel);
         Contribution c;
         c.light = y.weight * z.weight * f * factor * float(over);
-        c.layer = layer, c.weight = float(over * kernel);
+        c.layer = Strategies<Media>::layer_of(i, z), c.weight = float(over * kernel);
         found(c);
     }
 

@@ -4,10 +4,9 @@
 #include <cmath>
 
 #include "core/render/camera_ray.h"
-#include "gathering/photon_maps/progressive_radius.h"
 #include "integrators/eye_path/image_loop.h"
+#include "integrators/upbp/merge_schedule.h"
 #include "integrators/upbp/merges.h"
-#include "integrators/upbp/upbp_settings.h"
 
 namespace mote::integrators {
 
@@ -16,12 +15,6 @@ using namespace core;
 namespace {
 
 constexpr std::uint32_t light_path_stream = 0x75706270u;
-/// With more light paths than this in a pass kernels are smaller, so that a query costs no more.
-constexpr double paths_of_first_radius = 1e4;
-/// Beams cross far more often than points lie beside them, and most of their boxes are empty: so many light
-/// paths have beams, however many there are, and so many the first radius.
-constexpr std::size_t paths_with_beams = 500;
-constexpr double paths_of_first_beam_radius = 100.0;
 
 /// Sum over all connections of a pixel's light path with its eye path, and over all merges of its eye path
 /// with the light paths of every pixel, each by its MIS weight (Křivánek et al. 2014).
@@ -66,10 +59,10 @@ class UpbpEstimator final : public Estimator {
     }
 
   private:
-    std::size_t beam_paths() const { return std::min(pixels(), paths_with_beams); }
-    /// Evenly spread, and as many as there are beam_paths().
+    /// Evenly spread.
     bool has_beams(std::size_t path) const {
-        return (path + 1) * beam_paths() / pixels() > path * beam_paths() / pixels();
+        const std::size_t count = paths_with_beams(pixels());
+        return (path + 1) * count / pixels() > path * count / pixels();
     }
     /// The light subpaths of a pass.
     struct Lights {
@@ -84,20 +77,7 @@ class UpbpEstimator final : public Estimator {
         BidirectionalSettings s;
         s.limits = settings_.limits, s.heuristic = settings_.heuristic;
         s.all_connections = settings_.all_connections, s.connections = settings_.connections;
-        const double size = double(scene_.bounds().radius());
-        const double first = settings_.radius * (size > 0.0 ? size : 1.0);
-        const auto set = [&](Merge technique, bool used, int dimensions) {
-            const auto n = double(dimensions == 1 ? beam_paths() : pixels());
-            const double few = dimensions == 1 ? paths_of_first_beam_radius : paths_of_first_radius;
-            const double fraction = gathering::radius_fraction(pass, settings_.alpha, dimensions) *
-                                    gathering::radius_for_paths(n, few, dimensions);
-            s.merging.radius[std::size_t(technique)] = used ? first * fraction : 0.0;
-            s.merging.light_subpaths[std::size_t(technique)] = n;
-        };
-        set(Merge::surface, settings_.surface, 2);
-        set(Merge::point_point_3d, Media && settings_.point_point, 3);
-        set(Merge::point_beam_2d, Media && settings_.point_beam, 2);
-        set(Merge::beam_beam_1d, Media && settings_.beam_beam, 1);
+        s.merging = merges_of_pass(settings_, pass, double(scene_.bounds().radius()), pixels(), Media);
         s.merging.light_beams = possible_length(scene_, settings_.light_beams);
         s.merging.eye_beams = possible_length(scene_, settings_.query_beams);
         radius_ = s.merging.radius[std::size_t(Merge::surface)];

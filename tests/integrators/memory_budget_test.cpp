@@ -31,6 +31,25 @@ std::string refusal(const Scene& scene, const std::string& type, const std::stri
     return "";
 }
 
+/// Words of the error of mote_upbp's first pass of an image in so many bytes; "" where there is none. Without
+/// beams, of which a small image has more for each subpath.
+std::string refused_subpaths(const Scene& scene, int width, int height, double bytes) {
+    RenderOptions options{.seed = 3, .width = width, .height = height};
+    options.memory = MemoryBudget(bytes);
+    const auto integrator =
+        integrator_from(R"(<integrator type="mote_upbp"><boolean name="bb1d" value="false"/></integrator>)");
+    const bool small = width * height < 100000;  // many are refused before any pixel is written
+    PassImage image(small ? width : 1, small ? height : 1, integrator->layers(scene).size());
+    const std::atomic<bool> cancelled{false};
+    const auto filter = film_filter(scene);
+    try {
+        integrator->prepare(scene, options)->pass({0, *filter, cancelled}, image);
+    } catch (const OutOfMemory& error) {
+        return error.what();
+    }
+    return "";
+}
+
 std::string number(const std::string& name, int value) {
     return "<integer name=\"" + name + "\" value=\"" + std::to_string(value) + "\"/>";
 }
@@ -65,4 +84,23 @@ TEST_CASE("Methods refuse what exceeds the budget, and name it", "[memory]") {
     CHECK(refusal(*scene, "mote_micro_rendering", "", 1e5).find("65536 points") != std::string::npos);
     CHECK(refusal(*scene, "mote_upbp", "", 2000.0).find("subpaths fit") != std::string::npos);
     CHECK(refusal(*scene, "mote_vpl", R"(<selection type="lightcuts"/>)", 1e9).empty());
+}
+
+TEST_CASE("1e8 light subpaths are refused, with the number that fits", "[memory][upbp]") {
+    const auto scene = scene_from(box(grey, medium), 4);
+    const auto fits = [&](int width, int height, double bytes) {
+        const std::string said = refused_subpaths(*scene, width, height, bytes);
+        INFO(said);
+        const std::string words = " available; ", count = std::to_string(width * height);
+        CHECK(said.find("the vertices of " + count + " light subpaths") != std::string::npos);
+        CHECK(said.find(" subpaths fit") != std::string::npos);
+        const std::size_t begin = said.find(words);
+        REQUIRE(begin != std::string::npos);
+        return std::stoi(said.substr(begin + words.size()));
+    };
+    CHECK(std::abs(fits(10000, 10000, 2e9) - 2 * fits(10000, 10000, 1e9)) <= 1);
+    const int rows = fits(8, 1000, 1e6) / 8;
+    CHECK(rows > 8);
+    CHECK(refused_subpaths(*scene, 8, rows, 1e6).empty());
+    CHECK_FALSE(refused_subpaths(*scene, 8, rows + 1, 1e6).empty());
 }
