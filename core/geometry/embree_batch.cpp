@@ -77,7 +77,7 @@ void closest_of_packet(const ShapeScenes& scenes, Query& query, const RayBatch& 
         valid[i] = -int(i < count) & -int(traceable(o, d, t_min, t_max, max_origin));
         p.ray.org_x[i] = unit * o.x, p.ray.org_y[i] = unit * o.y, p.ray.org_z[i] = unit * o.z;
         p.ray.dir_x[i] = unit * d.x, p.ray.dir_y[i] = unit * d.y, p.ray.dir_z[i] = unit * d.z;
-        p.ray.tnear[i] = t_min, p.ray.tfar[i] = t_max;
+        p.ray.tnear[i] = t_min, p.ray.tfar[i] = t_max_of_lane(valid[i], t_max);
         p.ray.time[i] = 0.0f, p.ray.mask[i] = 0xffffffffu, p.ray.id[i] = unsigned(i), p.ray.flags[i] = 0;
         p.hit.geomID[i] = p.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         p.hit.primID[i] = 0, p.hit.u[i] = p.hit.v[i] = 0.0f;

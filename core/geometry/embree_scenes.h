@@ -23,6 +23,11 @@ inline bool traceable(const Vec3& origin, const Vec3& direction, float t_min, fl
     return (inside & int(std::fabs(t_min) < infinity) & int(t_max >= t_min)) != 0;
 }
 
+/// t_max of a packet's lane for Embree. A packet wider than the processor's vectors is split by Embree 3,
+/// which then reads no mask of lanes: only t_max < t_min keeps it from a ray that is not finite (Debian's
+/// Embree aborts there).
+inline float t_max_of_lane(int valid, float t_max) { return valid ? t_max : -infinity; }
+
 /// The unit for a scene of these shapes.
 TracingUnit unit_for(std::span<const std::shared_ptr<Shape>> shapes);
 
