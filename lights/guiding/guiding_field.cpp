@@ -43,8 +43,9 @@ VmfMixture GuidingField::at(const Vec3& position) const {
 }
 
 std::size_t GuidingField::leaf_of(const Vec3& position) const {
+    const float coordinates[3] = {position.x, position.y, position.z};  // Vec3 finds an index by branches
     const Node* node = nodes_.data();
-    while (node->axis >= 0) node = &nodes_[node->next + (position[node->axis] < node->plane ? 0u : 1u)];
+    while (node->axis >= 0) node = &nodes_[node->next + (coordinates[node->axis] < node->plane ? 0u : 1u)];
     return node->next;
 }
 

@@ -199,11 +199,11 @@ TEST_CASE("odd rays and odd scenes are answered", "[geometry][ray_tracer]") {
     tracer.occluded(reference);
     packet.origin_y[3] = packet.direction_z[5] = packet.t_max[7] = packet.t_min[9] = nan;
     packet.direction_x[11] = infinity;
-    const ShadowPacket asked = packet;
+    const ShadowPacket before = packet;
     tracer.occluded(packet);
     for (const int lane : {0, 1, 2, 4, 6, 8, 10, 12, 13, 14, 15})
         CHECK(packet.occluded(lane) == reference.occluded(lane));
-    for (const int lane : {3, 5, 9, 11}) CHECK(packet.t_max[lane] == asked.t_max[lane]);
+    for (const int lane : {3, 5, 9, 11}) CHECK(packet.t_max[lane] == before.t_max[lane]);
     CHECK(std::isnan(packet.t_max[7]));
     r = ray({-10, 0, 0}, {1, 0, 0});
     r.t_min = 2.0f, r.t_max = 1.0f;
