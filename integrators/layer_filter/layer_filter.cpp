@@ -17,6 +17,17 @@ namespace {
 /// do 1.2 to 1.4 times the passes.
 constexpr double work_of_layer = 180.0;
 
+/// Closest hits a pixel of passes below which OpenImageDenoise takes rough features, with their noise: the
+/// error is larger by a tenth, but to march and denoise the others takes as long as some 90.
+constexpr double work_of_features = 90.0;
+FeatureSettings rough(const FeatureSettings& s) { return {std::min(s.samples, 4), 4.0f * s.voxels}; }
+
+double work_of_pixel(const Film& film) {
+    double work = 0.0;
+    for (std::size_t part = 0; part < film.parts(); ++part) work += film.work(part);
+    return work / double(film.pixels());
+}
+
 /// Mean and its variance, by the passes alone: an earlier call, for a preview, may have replaced them.
 struct LayerOfPasses {
     std::vector<Rgb> mean;
@@ -99,24 +110,35 @@ LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const
 LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options,
                          const LayerFilterParameters& parameters, std::vector<Choice> layers)
     : LayerFilter(scene, options, parameters.features, std::move(layers), true,
-                  [settings = parameters.filter](const screenspace::FilterFeatures& features) {
+                  [settings = parameters.filter](const screenspace::FilterFeatures& features,
+                                                 screenspace::FilterQuality) {
                       return screenspace::make_own_filter(features, settings);
                   }) {}
 
 LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const FeatureSettings& features,
                          std::shared_ptr<const screenspace::OidnLibrary> library, std::vector<Choice> layers)
     : LayerFilter(scene, options, features, std::move(layers), false,
-                  [library = std::move(library)](const screenspace::FilterFeatures& found) {
-                      return screenspace::make_oidn_filter(found, library);
+                  [library = std::move(library)](const screenspace::FilterFeatures& found,
+                                                 screenspace::FilterQuality quality) {
+                      return screenspace::make_oidn_filter(found, library, quality);
                   }) {}
 
-void LayerFilter::find_features(CancelToken cancelled) {
-    if (filter_) return;
+screenspace::FilterQuality LayerFilter::feature_quality(const Film& film) const {
+    const bool little = !has_variance_ && work_of_pixel(film) < work_of_features;
+    return little ? screenspace::FilterQuality::preview : screenspace::FilterQuality::full;
+}
+
+void LayerFilter::find_features(const Film& film, CancelToken cancelled) {
+    const screenspace::FilterQuality quality = feature_quality(film);
+    if (filter_ && quality == found_quality_) return;
     options_.cancelled = cancelled;
     const Stopwatch stopwatch(feature_seconds_);
+    const bool full = quality == screenspace::FilterQuality::full;
+    filter_.reset();
     features_ = std::make_unique<screenspace::FilterFeatures>(
-        find_filter_features(scene_, options_, feature_settings_));
-    filter_ = make_(*features_);
+        find_filter_features(scene_, options_, full ? feature_settings_ : rough(feature_settings_)));
+    filter_ = make_(*features_, quality);
+    found_quality_ = quality;
 }
 
 bool LayerFilter::has_halves(const Film& film) const {
@@ -143,7 +165,7 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
             throw std::invalid_argument("a filtered layer needs its squares");
     if (layers_.empty() || (has_variance_ && !film.has_passes(2))) return;
     variances_.clear();
-    find_features(cancelled);
+    find_features(film, cancelled);
     if (joins_layers(film)) {
         apply_to_sums(film, screenspace::FilterQuality::full, cancelled);
         return;
@@ -172,10 +194,8 @@ void LayerFilter::apply_to_mean(Film& film, const Choice& choice, CancelToken ca
 }
 
 bool LayerFilter::joins_layers(const Film& film) const {
-    if (has_variance_) return false;
-    double work = 0.0;
-    for (std::size_t part = 0; part < film.parts(); ++part) work += film.work(part);
-    return work < work_of_layer * double(film.pixels()) * double(layers_.size() - kinds(film).size());
+    return !has_variance_ &&
+           work_of_pixel(film) < work_of_layer * double(layers_.size() - kinds(film).size());
 }
 
 std::vector<LayerFilter::Kind> LayerFilter::kinds(const Film& film) const {
@@ -208,7 +228,7 @@ bool LayerFilter::apply_for_preview(Film& film, CancelToken cancelled) {
         apply(film, cancelled);
         return true;
     }
-    find_features(cancelled);
+    find_features(film, cancelled);
     apply_to_sums(film, screenspace::FilterQuality::preview, cancelled);
     return false;
 }

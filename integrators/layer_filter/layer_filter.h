@@ -44,8 +44,9 @@ class LayerFilter {
     /// squares, and Cancelled.
     ///
     /// After little work OpenImageDenoise takes the sum of all layers of a kind at once, each of which keeps
-    /// its fraction of a pixel: more passes are then worth more than a run for each layer. Work is counted,
-    /// so this does not depend on the machine.
+    /// its fraction of a pixel: more passes are then worth more than a run for each layer. After even less it
+    /// takes features of fewer eye rays and steps, with their noise. Work is counted, so this does not depend
+    /// on the machine.
     void apply(core::Film& film, core::CancelToken cancelled = {});
 
     /// apply() for a preview: OpenImageDenoise takes sums always, and quickly. Returns true where it is the
@@ -69,8 +70,8 @@ class LayerFilter {
     void add_statistics(core::Statistics& statistics) const;
 
   private:
-    using MakeFilter =
-        std::function<std::unique_ptr<screenspace::ViewFilter>(const screenspace::FilterFeatures&)>;
+    using MakeFilter = std::function<std::unique_ptr<screenspace::ViewFilter>(
+        const screenspace::FilterFeatures&, screenspace::FilterQuality)>;
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options, const FeatureSettings& features,
                 std::vector<Choice> layers, bool has_variance, MakeFilter make);
     /// Layers that see the same features, and have passes.
@@ -84,7 +85,9 @@ class LayerFilter {
     /// denoised layer differs from the mean by more than the noise of the dark pixels there, and would be
     /// mixed with it in rings.
     std::uint32_t fewest_passes() const { return has_variance_ ? 2 : 4; }
-    void find_features(core::CancelToken cancelled);
+    /// Quality of the features for the picture of this film.
+    screenspace::FilterQuality feature_quality(const core::Film& film) const;
+    void find_features(const core::Film& film, core::CancelToken cancelled);
     void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_mean(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_sums(core::Film& film, screenspace::FilterQuality quality, core::CancelToken cancelled);
@@ -98,7 +101,8 @@ class LayerFilter {
     bool has_variance_;
     MakeFilter make_;
     std::unique_ptr<screenspace::FilterFeatures> features_;
-    std::unique_ptr<screenspace::ViewFilter> filter_;  ///< from the features
+    std::unique_ptr<screenspace::ViewFilter> filter_;                              ///< from the features
+    screenspace::FilterQuality found_quality_ = screenspace::FilterQuality::full;  ///< of the features
     std::vector<std::vector<float>> variances_;
     double feature_seconds_ = 0.0, filter_seconds_ = 0.0;
     double seconds_per_run_ = 0.0;  ///< of the filter at full quality, by the last call

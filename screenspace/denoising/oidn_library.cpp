@@ -199,17 +199,18 @@ void OidnLibrary::check(const std::string& what) const {
 struct OidnLibrary::Series::Network {
     const OidnLibrary& library;
     int width, height;
-    bool features;
+    bool features, clean_features;
     Quality quality;
     Functions::Run run;
 };
 
-OidnLibrary::Series::Series(const OidnLibrary& library, int width, int height, bool features, Quality quality)
-    : network_(new Network{library, width, height, features, quality,
-                           Functions::Run(*library.functions_, library.device_, width, height)}) {
+OidnLibrary::Series::Series(const OidnLibrary& library, const Picture& first)
+    : network_(new Network{library, first.width, first.height, !first.albedo.empty(), first.clean_features,
+                           first.quality,
+                           Functions::Run(*library.functions_, library.device_, first.width, first.height)}) {
     network_->run.flag("hdr");
-    if (quality == Quality::balanced) network_->run.quality(balanced_quality);
-    if (features) network_->run.flag("cleanAux");
+    if (first.quality == Quality::balanced) network_->run.quality(balanced_quality);
+    if (network_->features && first.clean_features) network_->run.flag("cleanAux");
 }
 OidnLibrary::Series::~Series() = default;
 OidnLibrary::Series::Series(Series&&) noexcept = default;
@@ -217,7 +218,7 @@ OidnLibrary::Series::Series(Series&&) noexcept = default;
 std::vector<Rgb> OidnLibrary::Series::denoised(const Picture& picture) {
     const Network& n = *network_;
     if (picture.width != n.width || picture.height != n.height || picture.quality != n.quality ||
-        picture.albedo.empty() == n.features)
+        picture.albedo.empty() == n.features || picture.clean_features != n.clean_features)
         throw std::invalid_argument("the picture is not one of this series");
     n.run.image("color", picture.colour);
     n.run.image("albedo", picture.albedo);
@@ -227,12 +228,10 @@ std::vector<Rgb> OidnLibrary::Series::denoised(const Picture& picture) {
     return result;
 }
 
-OidnLibrary::Series OidnLibrary::series(int width, int height, bool features, Quality quality) const {
-    return {*this, width, height, features, quality};
-}
+OidnLibrary::Series OidnLibrary::series(const Picture& first) const { return {*this, first}; }
 
 std::vector<Rgb> OidnLibrary::denoised(const Picture& picture) const {
-    return series(picture.width, picture.height, !picture.albedo.empty(), picture.quality).denoised(picture);
+    return series(picture).denoised(picture);
 }
 
 std::vector<Rgb> OidnLibrary::denoised_feature(Feature which, int width, int height,

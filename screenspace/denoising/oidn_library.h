@@ -31,15 +31,16 @@ class OidnLibrary {
     /// Features of the pixels; empty: none.
     struct Picture {
         int width = 0, height = 0;
-        std::span<const core::Rgb> colour;          ///< radiance
-        std::span<const core::Rgb> albedo, normal;  ///< without noise: those of denoised_feature()
+        std::span<const core::Rgb> colour;  ///< radiance
+        std::span<const core::Rgb> albedo, normal;
+        bool clean_features = true;  ///< without noise: those of denoised_feature()
         Quality quality = Quality::high;
     };
     /// Throws InputError where the library fails.
     std::vector<core::Rgb> denoised(const Picture& picture) const;
     class Series;
-    /// For pictures of one size, one quality and the same features.
-    Series series(int width, int height, bool features, Quality quality) const;
+    /// For pictures of the size, the quality and the features of this one.
+    Series series(const Picture& first) const;
     enum class Feature { albedo, normal };
     std::vector<core::Rgb> denoised_feature(Feature which, int width, int height,
                                             std::span<const core::Rgb> values) const;
@@ -67,7 +68,7 @@ class OidnLibrary::Series {
 
   private:
     friend class OidnLibrary;
-    Series(const OidnLibrary& library, int width, int height, bool features, Quality quality);
+    Series(const OidnLibrary& library, const Picture& first);
     struct Network;
     std::unique_ptr<Network> network_;
 };

@@ -26,11 +26,16 @@ bool is_zero(std::span<const Rgb> values) {
 
 class OidnFilter final : public ViewFilter {
   public:
-    OidnFilter(const FilterFeatures& f, std::shared_ptr<const OidnLibrary> library)
-        : library_(std::move(library)), width_(f.width), height_(f.height) {
+    OidnFilter(const FilterFeatures& f, std::shared_ptr<const OidnLibrary> library, FilterQuality features)
+        : library_(std::move(library)),
+          width_(f.width),
+          height_(f.height),
+          clean_features_(features == FilterQuality::full) {
         using Feature = OidnLibrary::Feature;
         const auto clean = [&](Feature which, const std::vector<Rgb>& values) {
-            return is_zero(values) ? values : library_->denoised_feature(which, width_, height_, values);
+            return clean_features_ && !is_zero(values)
+                       ? library_->denoised_feature(which, width_, height_, values)
+                       : values;
         };
         reflected_ = clean(Feature::albedo, between_0_and_1(f.reflected));
         scattering_ = clean(Feature::albedo, between_0_and_1(f.scattering));
@@ -48,8 +53,8 @@ class OidnFilter final : public ViewFilter {
         const auto quality = layer.quality == FilterQuality::full ? OidnLibrary::Quality::high
                                                                   : OidnLibrary::Quality::balanced;
         const std::vector<Rgb> denoised = blend_by_variance(
-            width_, height_, by_network({width_, height_, colour, albedo, normal_, quality}), colour,
-            layer.variance, blend_radius, blend_deviations);
+            width_, height_, by_network({width_, height_, colour, albedo, normal_, clean_features_, quality}),
+            colour, layer.variance, blend_radius, blend_deviations);
         for (std::size_t i = 0; i < denoised.size(); ++i)
             if (is_finite(layer.mean[i]) && is_finite(denoised[i]))
                 result.mean[i] = glm::max(denoised[i], glm::min(layer.mean[i], Rgb(0.0f)));
@@ -61,14 +66,14 @@ class OidnFilter final : public ViewFilter {
   private:
     /// Denoised by the network of the picture before where that has the same quality.
     std::vector<Rgb> by_network(const OidnLibrary::Picture& picture) {
-        if (!series_ || quality_ != picture.quality)
-            series_.emplace(library_->series(width_, height_, !picture.albedo.empty(), picture.quality));
+        if (!series_ || quality_ != picture.quality) series_.emplace(library_->series(picture));
         quality_ = picture.quality;
         return series_->denoised(picture);
     }
 
     std::shared_ptr<const OidnLibrary> library_;
     int width_, height_;
+    bool clean_features_;
     /// Guides of the library: light that surfaces reflect and media scatter towards the eye, and normals.
     std::vector<Rgb> reflected_, scattering_, normal_;
     std::optional<OidnLibrary::Series> series_;
@@ -78,8 +83,9 @@ class OidnFilter final : public ViewFilter {
 }  // namespace
 
 std::unique_ptr<ViewFilter> make_oidn_filter(const FilterFeatures& features,
-                                             std::shared_ptr<const OidnLibrary> library) {
-    return std::make_unique<OidnFilter>(features, std::move(library));
+                                             std::shared_ptr<const OidnLibrary> library,
+                                             FilterQuality quality) {
+    return std::make_unique<OidnFilter>(features, std::move(library), quality);
 }
 
 }  // namespace mote::screenspace

@@ -26,10 +26,12 @@ std::unique_ptr<ViewFilter> make_own_filter(const FilterFeatures& features,
                                             const LayerFilterSettings& settings);
 
 /// OpenImageDenoise, combined with the noisy mean as far as that shows more than noise (variance_blend.h):
-/// with many passes the picture converges to the mean. The features are denoised first, so that lenses and
-/// edges leave no noise in them. A layer without variance stays as it is. Throws InputError, here and from
-/// filtered(), where the library fails.
+/// with many passes the picture converges to the mean. At full `quality` the features are denoised first, so
+/// that lenses and edges leave no noise in them; for a preview the network is told that they have noise. A
+/// layer without variance stays as it is. Throws InputError, here and from filtered(), where the library
+/// fails.
 std::unique_ptr<ViewFilter> make_oidn_filter(const FilterFeatures& features,
-                                             std::shared_ptr<const OidnLibrary> library);
+                                             std::shared_ptr<const OidnLibrary> library,
+                                             FilterQuality quality = FilterQuality::full);
 
 }  // namespace mote::screenspace

@@ -1,7 +1,8 @@
 // Functions of OpenImageDenoise with results that a test can predict. A feature becomes itself plus 1; a
-// colour with both features, denoised before (above 0, or above -1 + 1 for normals), twice itself; without
-// any three times; with anything else, or without the option for HDR, an error. MOTE_STAND_IN_FAILS:
-// the error of every run. MOTE_STAND_IN_LOG: a file that gets a line for each colour that was denoised.
+// colour with both features, denoised before (above 0, or above -1 + 1 for normals) where they are said to be
+// clean, twice itself; without any three times; with anything else, or without the option for HDR, an error.
+// MOTE_STAND_IN_FAILS: the error of every run. MOTE_STAND_IN_LOG: a file that gets a line for each colour
+// that was denoised.
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -45,8 +46,9 @@ std::string rule(const Filter& f, std::string& input, float& factor, float& more
     if (f.quality != 0 && f.quality != 5) return "colour of other than the default or balanced quality";
     if (!f.flags.count("hdr")) return "colour without hdr";
     if (!f.has("albedo") && !f.has("normal")) return factor = 3.0f, "";
-    if (!f.has("albedo") || !f.has("normal") || !f.flags.count("cleanAux")) return "half of the features";
+    if (!f.has("albedo") || !f.has("normal")) return "half of the features";
     factor = f.quality == 5 ? 4.0f : 2.0f;
+    if (!f.flags.count("cleanAux")) return "";
     return denoised_before(f.images.at("albedo")) && denoised_before(f.images.at("normal"))
                ? ""
                : "noisy features";
@@ -95,7 +97,8 @@ void oidnExecuteFilter(void* filter) {
     if (const char* fails = std::getenv("MOTE_STAND_IN_FAILS")) f.device->error = fails;
     if (!f.device->error.empty()) return;
     if (const char* log = std::getenv("MOTE_STAND_IN_LOG"); log && input == "color")
-        std::ofstream(log, std::ios::app) << "quality " << f.quality << '\n';
+        std::ofstream(log, std::ios::app)
+            << "quality " << f.quality << (f.flags.count("cleanAux") ? "" : ", noisy features") << '\n';
     if (const char* light = std::getenv("MOTE_STAND_IN_LIGHT"); light && input == "color")
         more += std::strtof(light, nullptr);
     const Image &from = f.images.at(input), &to = f.images.at("output");
