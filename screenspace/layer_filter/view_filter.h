@@ -27,7 +27,7 @@ std::unique_ptr<ViewFilter> make_own_filter(const FilterFeatures& features,
 
 /// OpenImageDenoise, combined with the noisy mean as far as that shows more than noise (variance_blend.h):
 /// with many passes the picture converges to the mean. At full `quality` the features are denoised first, so
-/// that lenses and edges leave no noise in them; for a preview the network is told that they have noise. A
+/// that lenses and edges leave no noise in them; for a preview the network takes them for noisy. A
 /// layer without variance stays as it is. Throws InputError, here and from filtered(), where the library
 /// fails.
 std::unique_ptr<ViewFilter> make_oidn_filter(const FilterFeatures& features,
