@@ -156,8 +156,20 @@ class PassLoop {
         result_.interrupted = interrupted() && in_time && !is_done();
         if (result_.interrupted || request_.checkpoint_at_end) write_checkpoint_now();
         result_.statistics.seconds["render"] = state_.seconds;
+        if (!in_time && !request_.range) warn_of_missing_layers();
         if (!result_.checkpoint_problem.empty())
             result_.statistics.warnings.push_back(result_.checkpoint_problem);
+    }
+
+    /// The time can be over when only some of the parts have passes.
+    void warn_of_missing_layers() {
+        const Film& film = result_.film;
+        if (film.pass_count() == 0 || film.has_passes(1)) return;
+        std::string names;
+        for (const Layer& layer : film.layers())
+            if (film.pass_count(layer.part) == 0) names += (names.empty() ? "" : ", ") + layer.name;
+        result_.statistics.warnings.push_back(
+            "the time was over before every layer had a pass: the picture lacks " + names);
     }
 
     const std::atomic<bool>& cancelled_flag() const {

@@ -237,6 +237,51 @@ TEST_CASE("Of a first pass that is cut off, finished pixels are kept, and the ot
     CHECK(bits(two) == bits(render(*scene, CountingIntegrator(), request_for(2))));
 }
 
+TEST_CASE("Layers that have no pass when the time is over are named", "[driver]") {
+    std::atomic<bool> stop{false}, over{false};
+    class TwoParts final : public Integrator {
+      public:
+        explicit TwoParts(std::atomic<bool>& end) : end_(end) {}
+        std::string type() const override { return "two_parts"; }
+        std::vector<Layer> layers(const Scene&) const override {
+            Layer near{"direct", ""}, far{"indirect", ""}, fog{"single_scattering", ""};
+            far.part = fog.part = 1;
+            return {near, far, fog};
+        }
+        Plan plan(const Scene&, const Requirements&) const override { return {}; }
+        std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
+            class Passes final : public Estimator {
+              public:
+                explicit Passes(std::atomic<bool>& end) : end_(end) {}
+                std::size_t next_part(const Film& film) const override { return film.pass_count(0) > 0; }
+                std::size_t part_of_pass(std::uint32_t number) const override { return number % 2; }
+                bool pass(const PassContext& context, PassImage&) override {
+                    return context.part == 0 || !(end_ = true);  // the second part's pass ends in the middle
+                }
+
+              private:
+                std::atomic<bool>& end_;
+            };
+            return std::make_unique<Passes>(end_);
+        }
+
+      private:
+        std::atomic<bool>& end_;
+    };
+    RenderRequest request = request_for(4);
+    request.interrupted = &stop, request.time_is_over = &over;
+    over = true;
+    const RenderResult late = render(*fake_scene(), TwoParts(stop), request);
+    CHECK_FALSE(late.interrupted);
+    REQUIRE_FALSE(late.statistics.warnings.empty());
+    CHECK_THAT(late.statistics.warnings.back(),
+               Catch::Matchers::EndsWith("lacks indirect, single_scattering"));
+    over = stop = false;  // Ctrl-C: the caller names them, where it reports the interruption
+    const RenderResult cut = render(*fake_scene(), TwoParts(stop), request);
+    CHECK(cut.interrupted);
+    CHECK(cut.statistics.warnings.empty());
+}
+
 TEST_CASE("Work that was cancelled while building ends the render", "[driver]") {
     class Slow final : public Integrator {
       public:
