@@ -14,7 +14,7 @@ enum class Guiding : std::uint8_t { off, automatic, on };
 struct GuidingSettings {
     Guiding mode = Guiding::off;
     int passes = 63;               ///< of training; all but the first seven are the picture's
-    int paths = 65536;             ///< of a training pass, that are learned from
+    int paths = 16384;             ///< of a training pass, that are learned from
     double leaf_samples = 8000.0;  ///< a leaf of the field with more is split
     double memory = 64.0;          ///< of the field [MiB]
 };
