@@ -99,7 +99,6 @@ bool PassRunner::run_pass(const std::atomic<bool>& cancelled) {
 }
 
 double PassRunner::counted_work() const {
-    if (film_.parts() == 1) return 0.0;
     Statistics statistics;
     estimator_->add_statistics(statistics);
     return core::counted_work(statistics);

@@ -50,8 +50,7 @@ class PassRunner {
     double build_seconds() const { return build_seconds_; }  ///< wall time of prepare()
 
   private:
-    /// So far; 0 where the film has one part, which nothing is compared with.
-    double counted_work() const;
+    double counted_work() const;  ///< so far
 
     Film& film_;
     std::unique_ptr<PixelFilter> filter_;

@@ -253,6 +253,8 @@ TEST_CASE(
         film.add_pass(PassImage(film.width(), film.height(), film.layers().size()), 0,
                       of_pixel * double(film.pixels()));
     };
+    CHECK(film.work(0) > 0.0);  // counted, although the film has one part
+    CHECK(film.work(0) < 90.0 * double(film.pixels()));
     CHECK(runs(film) == "quality 0, noisy features\nquality 0, noisy features\n");
     add_work(100.0);
     CHECK(runs(film) == "quality 0\nquality 0\n");
