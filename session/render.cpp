@@ -34,13 +34,6 @@ std::vector<core::HitFeature> features_of(const LoadedScene& scene, const Render
     return features;
 }
 
-std::vector<std::string> layers_without_passes(const core::Film& film) {
-    std::vector<std::string> names;
-    for (const core::Layer& layer : film.layers())
-        if (film.pass_count(layer.part) == 0) names.push_back(layer.name);
-    return names;
-}
-
 core::ImageChannels preview_of(const core::Film& film, const std::optional<core::PictureError>& error,
                                bool with_layers) {
     core::ImageChannels image;
@@ -202,7 +195,7 @@ class RenderWork {
             rendered.noise = noise->second;
         rendered.error = result.error;
         rendered.interrupted = result.interrupted;
-        rendered.missing_layers = layers_without_passes(result.film);
+        rendered.missing_layers = result.film.layers_without_passes();
         rendered.finished_for = result.finished_for;
         rendered.finished_pixels = std::move(result.finished_pixels);
         rendered.checkpoint_problem = std::move(result.checkpoint_problem);

@@ -148,6 +148,13 @@ bool Film::has_passes(std::uint32_t passes) const {
     return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) { return part.passes >= passes; });
 }
 
+std::vector<std::string> Film::layers_without_passes() const {
+    std::vector<std::string> names;
+    for (const Layer& layer : layers_)
+        if (pass_count(layer.part) == 0) names.push_back(layer.name);
+    return names;
+}
+
 double Film::passes_of(std::size_t layer, std::size_t pixel) const {
     const std::size_t where = where_[layer];
     return where < layers_.size() ? sums_[where].at(3 * pixel) : double(parts_[layers_[layer].part].passes);

@@ -74,6 +74,8 @@ class Film {
     void begin_at(std::size_t part, std::uint32_t first);
     /// True where every part has so many passes. A picture is complete with one.
     bool has_passes(std::uint32_t passes) const;
+    /// Names of the layers whose parts have no pass.
+    std::vector<std::string> layers_without_passes() const;
     /// The layers of a part, in order: those of the images of its passes.
     std::span<const std::size_t> layers_of(std::size_t part) const { return parts_.at(part).layers; }
     /// Work of all passes of a part (add_pass).

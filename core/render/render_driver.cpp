@@ -1,6 +1,8 @@
 // The loop over passes.
 #include "core/render/render_driver.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <new>
@@ -163,13 +165,10 @@ class PassLoop {
 
     /// The time can be over when only some of the parts have passes.
     void warn_of_missing_layers() {
-        const Film& film = result_.film;
-        if (film.pass_count() == 0 || film.has_passes(1)) return;
-        std::string names;
-        for (const Layer& layer : film.layers())
-            if (film.pass_count(layer.part) == 0) names += (names.empty() ? "" : ", ") + layer.name;
-        result_.statistics.warnings.push_back(
-            "the time was over before every layer had a pass: the picture lacks " + names);
+        const std::vector<std::string> names = result_.film.layers_without_passes();
+        if (names.empty() || result_.film.pass_count() == 0) return;
+        result_.statistics.warnings.push_back(fmt::format(
+            "the time was over before every layer had a pass: the picture lacks {}", fmt::join(names, ", ")));
     }
 
     const std::atomic<bool>& cancelled_flag() const {

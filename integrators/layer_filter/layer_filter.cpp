@@ -18,7 +18,8 @@ namespace {
 constexpr double work_of_layer = 180.0;
 
 /// Closest hits a pixel of passes below which OpenImageDenoise takes rough features, with their noise: the
-/// error is larger by a tenth, but to march and denoise the others takes as long as some 90.
+/// error is larger by a tenth, but to march and denoise the others takes as long as some 90
+/// (smoke room).
 constexpr double work_of_features = 90.0;
 FeatureSettings rough(const FeatureSettings& s) { return {std::min(s.samples, 4), 4.0f * s.voxels}; }
 
@@ -123,17 +124,12 @@ LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const
                       return screenspace::make_oidn_filter(found, library, quality);
                   }) {}
 
-screenspace::FilterQuality LayerFilter::feature_quality(const Film& film) const {
-    const bool little = !has_variance_ && work_of_pixel(film) < work_of_features;
-    return little ? screenspace::FilterQuality::preview : screenspace::FilterQuality::full;
-}
-
 void LayerFilter::find_features(const Film& film, CancelToken cancelled) {
-    const screenspace::FilterQuality quality = feature_quality(film);
+    const bool full = has_variance_ || work_of_pixel(film) >= work_of_features;
+    const auto quality = full ? screenspace::FilterQuality::full : screenspace::FilterQuality::preview;
     if (filter_ && quality == found_quality_) return;
     options_.cancelled = cancelled;
     const Stopwatch stopwatch(feature_seconds_);
-    const bool full = quality == screenspace::FilterQuality::full;
     filter_.reset();
     features_ = std::make_unique<screenspace::FilterFeatures>(
         find_filter_features(scene_, options_, full ? feature_settings_ : rough(feature_settings_)));

@@ -85,8 +85,7 @@ class LayerFilter {
     /// denoised layer differs from the mean by more than the noise of the dark pixels there, and would be
     /// mixed with it in rings.
     std::uint32_t fewest_passes() const { return has_variance_ ? 2 : 4; }
-    /// Quality of the features for the picture of this film.
-    screenspace::FilterQuality feature_quality(const core::Film& film) const;
+    /// Features of the quality that the film's work is worth.
     void find_features(const core::Film& film, core::CancelToken cancelled);
     void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_mean(core::Film& film, const Choice& choice, core::CancelToken cancelled);

@@ -13,8 +13,8 @@ const ParameterList<GuidingSettings>& guiding_rows() {
     static const ParameterList<S> list{
         row("guiding", &S::mode,
             {{"off", Guiding::off}, {"automatic", Guiding::automatic}, {"on", Guiding::on}},
-            "Directions of paths also from a field of incident radiance, learned before the first pass; "
-            "automatic: where trial passes find less noise for the same work."),
+            "Directions of paths also from a field of incident radiance, learned before and in the first "
+            "passes; automatic: where trial passes find less noise for the same work."),
         row("guiding_passes", &S::passes, at_least(1),
             "Training passes of guided paths; all but the first seven are passes of the picture."),
         row("guiding_paths", &S::paths, at_least(16), "Paths of a training pass that are learned from."),

@@ -28,9 +28,10 @@ struct Filter {
     bool has(const std::string& name) const { return images.count(name) > 0; }
 };
 
-bool denoised_before(const Image& feature) {
+/// True where no number is below the least that a feature has after it.
+bool denoised_before(const Image& feature, float least) {
     for (std::size_t i = 0; i < feature.numbers(); ++i)
-        if (feature.pixels[i] < 0.0f) return false;
+        if (feature.pixels[i] < least) return false;
     return true;
 }
 
@@ -48,8 +49,10 @@ std::string rule(const Filter& f, std::string& input, float& factor, float& more
     if (!f.has("albedo") && !f.has("normal")) return factor = 3.0f, "";
     if (!f.has("albedo") || !f.has("normal")) return "half of the features";
     factor = f.quality == 5 ? 4.0f : 2.0f;
-    if (!f.flags.count("cleanAux")) return "";
-    return denoised_before(f.images.at("albedo")) && denoised_before(f.images.at("normal"))
+    const bool clean =
+        denoised_before(f.images.at("albedo"), 1.0f) && denoised_before(f.images.at("normal"), 0.0f);
+    if (!f.flags.count("cleanAux")) return clean ? "clean features that are said to be noisy" : "";
+    return denoised_before(f.images.at("albedo"), 0.0f) && denoised_before(f.images.at("normal"), 0.0f)
                ? ""
                : "noisy features";
 }
