@@ -16,25 +16,28 @@ template <bool Media>
 class PathEstimator final : public Estimator {
   public:
     PathEstimator(const Scene& scene, const RenderOptions& options, const PathSettings& settings)
-        : scene_(scene), settings_(settings), loop_(scene, options) {
+        : scene_(scene), settings_(settings), loop_(scene, options), again_(scene, options) {
         settings_.limits.wanted = options.cells;
         if (!Media && WavefrontScene::suits(scene, settings_)) wavefront_.emplace(scene, settings_.limits);
         if (settings_.guiding.mode == Guiding::off) return;
         const Stopwatch stopwatch(training_seconds_);
-        training_.emplace(scene, options, settings_, guided_ray_work(), loop_.counters());
+        training_.emplace(scene, options, settings_, guided_ray_work(), again_.counters());
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
         const std::uint32_t learns = training_ ? training_->picture_passes() : 0;
         if (learns == 0) return trace(context, image);
         return catch_up(context, image, learns) &&
-               (context.index < learns ? trace_and_learn(context, image) : trace(context, image));
+               (context.index < learns ? trace_and_learn(loop_, context, image) : trace(context, image));
     }
     void add_statistics(Statistics& statistics) const override {
         loop_.add_statistics(statistics);
         if (settings_.guiding.mode == Guiding::off) return;
         statistics.seconds["guiding"] += training_seconds_;
         statistics.values["guided"] = guide() ? 1.0 : 0.0;
+        Statistics guiding;
+        again_.add_statistics(guiding);
+        statistics.values["guiding_rays"] += double(guiding.rays["closest"] + guiding.rays["occlusion"]);
         if (!guide()) return;
         statistics.values["guiding_leaves"] +=
             double(guide()->surfaces().leaves().size() + guide()->media().leaves().size());
@@ -63,9 +66,9 @@ class PathEstimator final : public Estimator {
             if (recorder) recorder->finish(task.packet(), samples->surfaces, samples->media);
         });
     }
-    bool trace_and_learn(const PassContext& context, PassImage& image) {
-        std::vector<GuideSamples> samples(loop_.tasks());
-        const bool done = loop_.run(context, image, eye(), [&](EyeTask<Media>& task) {
+    bool trace_and_learn(ImageLoop<Media>& loop, const PassContext& context, PassImage& image) {
+        std::vector<GuideSamples> samples(loop.tasks());
+        const bool done = loop.run(context, image, eye(), [&](EyeTask<Media>& task) {
             PathRecorder<Media> recorder;
             const bool records = training_->records(context.index, task.index());
             trace_packets(task, records ? &recorder : nullptr, &samples[task.index()]);
@@ -81,8 +84,8 @@ class PathEstimator final : public Estimator {
         if (training_->learned() == std::min(context.index, learns)) return true;
         PassImage none(image.width(), image.height(), image.layers());
         for (; training_->learned() < std::min(context.index, learns); none.clear())
-            if (!trace_and_learn({training_->learned(), context.filter, context.cancelled, context.part},
-                                 none))
+            if (!trace_and_learn(
+                    again_, {training_->learned(), context.filter, context.cancelled, context.part}, none))
                 return false;
         return true;
     }
@@ -93,6 +96,7 @@ class PathEstimator final : public Estimator {
     PathSettings settings_;
     std::optional<WavefrontScene> wavefront_;  ///< for scenes that it suits
     ImageLoop<Media> loop_;
+    ImageLoop<Media> again_;  ///< counts what is no work of the pass: training, and passes of another run
     std::optional<GuideTraining<Media>> training_;  ///< of guided paths
     double training_seconds_ = 0.0;
 };
