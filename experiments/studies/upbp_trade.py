@@ -1,0 +1,150 @@
+#!/usr/bin/python3
+"""mote_upbp, each of its techniques alone, mote_bdpt, ray lights and volpath at equal processor time in ten scenes with media.
+
+Usage: upbp_trade.py [--seconds 60] [--reference 600] [--size 320x200] [--scenes NAME,...] [--output CSV] [--references FOLDER] [--quick]
+Every method renders as many passes as a pilot says fit into --seconds of one thread's processor time. The error is `mote compare`
+against two references of mote_bdpt or volpath, made once in --references, each --reference seconds long. Each result is appended to
+--output at once, and what is there is not rendered again. The table at the end has the relative RMSE [%] at --seconds (errors fall as
+the root of the time that a method took), the combination over the best of its techniques alone, and volpath's time to the
+combination's error over that of the combination.
+"""
+import argparse
+import csv
+import json
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+DATA = Path(os.environ.get("MOTE_TEST_DATA") or ROOT.parent / "shared" / "data")
+FIGURES = ROOT / "experiments/figures/scenes"
+# File, its settings, and the integrator of the references.
+SCENES = {
+    "glass in thin fog": (FIGURES / "glass_in_fog.xml", [], "mote_bdpt"),
+    "glass in dense fog": (FIGURES / "glass_in_fog.xml", ["sigma_t=2"], "mote_bdpt"),
+    "glass of milk": (FIGURES / "glass_of_milk.xml", [], "mote_bdpt"),
+    "volumetric caustic": (DATA / "scenes/bitterli_rainbow/volumetric-caustic/scene.xml", [], "mote_bdpt"),
+    "room of dense fog": (ROOT / "experiments/studies/vpls_and_media.xml", ["sigma_t=5", "wall=0.6"], "mote_bdpt"),
+    "fog grille": (ROOT / "scenes/fog_grille.xml", [], "volpath"),
+    "shade in smoke": (FIGURES / "shade_in_smoke.xml", [], "mote_bdpt"),
+    "smoke room": (ROOT / "scenes/smoke_room.xml", [], "volpath"),
+    "mist": (ROOT / "scenes/mist.xml", [], "volpath"),
+    "cloud": (ROOT / "scenes/cloud.xml", [], "volpath"),
+}
+NO_RAY_LIGHTS = ("glass of milk", "cloud")  # their paths scatter too often for virtual lights
+TECHNIQUES = ("bpt", "surf", "pp3d", "pb2d", "bb1d")
+
+
+def only(*names):
+    return "mote_upbp", [f"integrator.{t}={'true' if t in names else 'false'}" for t in TECHNIQUES]
+
+
+ALONE = {"bpt": only("bpt"), "surf, pp3d": only("surf", "pp3d"), "surf, pb2d": only("surf", "pb2d"), "surf, bb1d": only("surf", "bb1d")}
+METHODS = {"volpath": ("volpath", []), "mote_bdpt": ("mote_bdpt", []), "ray lights": ("mote_ray_lights", []),
+           "combined": ("mote_upbp", []), **ALONE}
+
+
+def render(args, scene, method, passes, seed, exr):
+    """Processor seconds."""
+    path, defined, _ = SCENES[scene]
+    integrator, settings = method
+    width, height = args.size.split("x")
+    words = [w for d in [f"film.width={width}", f"film.height={height}", *defined, *settings] for w in ("-D", d)]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([args.mote, "render", path, "--integrator", integrator, "--quiet", "-t", "1", "--passes", str(passes),
+                    "--seed", str(seed), *words, "-o", exr], check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def render_for(args, seconds, scene, method, seed, exr):
+    """Passes that fit into the time, two at the least, and the seconds that they took."""
+    one, three = (render(args, scene, method, n, seed, exr) for n in (1, 3))
+    passes = max(2, round((seconds - one) / max((three - one) / 2, 1e-3)))
+    return passes, render(args, scene, method, passes, seed, exr)
+
+
+def references(args, scene):
+    """Two of different seeds, each written under its name when it is complete."""
+    folder = args.references / args.size
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / f"{scene.replace(' ', '_')}_{seed}.exr" for seed in (1001, 1002)]
+    for seed, path in zip((1001, 1002), paths):
+        if not path.is_file():
+            part = path.with_name("part.exr")
+            render_for(args, args.reference, scene, (SCENES[scene][2], []), seed, part)
+            part.rename(path)
+    return paths
+
+
+def relative_rmse(args, image, pair):
+    said = subprocess.run([args.mote, "compare", image, pair[0], "--second", pair[1], "--json"], check=True, capture_output=True, text=True)
+    return json.loads(said.stdout)["metrics"]["error"]["value"]
+
+
+def rows_of(args):
+    """By scene and method: the rows of this size and time."""
+    if not args.output.is_file():
+        return {}
+    with open(args.output, newline="", encoding="utf-8") as file:
+        return {(r["scene"], r["method"]): r for r in csv.DictReader(file) if (r["size"], float(r["seconds"])) == (args.size, args.seconds)}
+
+
+def append(path, row):
+    new = not path.is_file()
+    with open(path, "a", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, row)
+        if new:
+            table.writeheader()
+        table.writerow(row)
+
+
+def measure(args, scene):
+    done = rows_of(args)
+    left = [m for m in METHODS if (scene, m) not in done and not (m == "ray lights" and scene in NO_RAY_LIGHTS)]
+    pair = references(args, scene) if left else ()
+    for method in left:
+        exr = args.references / "image.exr"
+        passes, taken = render_for(args, args.seconds, scene, METHODS[method], 1, exr)
+        error = relative_rmse(args, exr, pair)
+        append(args.output, {"scene": scene, "method": method, "size": args.size, "seconds": args.seconds, "passes": passes,
+                             "taken": f"{taken:.2f}", "relative_rmse": f"{error:.5g}"})
+
+
+def print_table(args):
+    print(f"{'scene':20}" + "".join(f"{m:>12}" for m in METHODS) + "    over best   volpath's time")
+    found = rows_of(args)
+    for scene in args.scenes:
+        errors = {m: float(r["relative_rmse"]) * (float(r["taken"]) / args.seconds) ** 0.5 for (s, m), r in found.items() if s == scene}
+        cells = "".join(f"{100 * errors[m]:12.1f}" if m in errors else f"{'':12}" for m in METHODS)
+        ours, best = errors["combined"], min(errors[m] for m in ALONE)
+        print(f"{scene:20}{cells}{ours / best:13.2f}{(errors['volpath'] / ours) ** 2:17.1f}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--mote", default=ROOT / "build/release/bin/mote")
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--reference", type=float, default=600.0)
+    parser.add_argument("--size", default="320x200")
+    parser.add_argument("--scenes", type=lambda names: names.split(","), default=list(SCENES))
+    parser.add_argument("--output", type=Path, default=ROOT / "out/upbp_trade.csv")
+    parser.add_argument("--references", type=Path, default=ROOT / "out/upbp_references")
+    parser.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
+    args = parser.parse_args()
+    if args.quick:
+        args.seconds, args.reference, args.size = 0.3, 0.6, "24x16"
+    for folder in (args.output.parent, args.references):
+        folder.mkdir(parents=True, exist_ok=True)
+    for scene in args.scenes:
+        try:
+            measure(args, scene)
+        except subprocess.CalledProcessError as error:
+            sys.exit(f"{scene}: {error}")
+    print_table(args)
+
+
+if __name__ == "__main__":
+    main()
