@@ -5,7 +5,7 @@ Each of pp3d, pb2d and bb1d renders alone by mote_upbp: light scattered once by 
 full of fog, like the still life of the paper. Noise is the standard deviation of one pass over the mean, both rms over pixels,
 without bias for the mean's own noise; its standard error is a jackknife over seeds. A film of 10 x 10 pixels has 100 light paths a pass: with as many, and with alpha = 1, all
 techniques have kernels of one radius in every pass (integrators/upbp/merge_schedule.h). Exit code 0: all is as documented; 1: it
-is not; 2: wrong usage, or mote is missing. A full run takes 10 minutes of one core, --quick half a minute.
+is not; 2: wrong usage, or mote is missing. A full run takes five minutes of one core, --quick half a minute.
 
     experiments/figures/krivanek_densities.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
@@ -85,7 +85,7 @@ def check(tables):
 def plot_table(table, path):
     """A panel for each scene: the noise of each technique by the optical depth of the kernel's radius."""
     rows = tables_of(table)[0]
-    made, panels = plotting.figure(columns=len(ROWS), height=400)
+    made, panels = plotting.figure(columns=len(ROWS), height=400, sharey=True)
     for name, axes in zip(ROWS, panels):
         ends = []
         for t, own in TECHNIQUES.items():
@@ -94,6 +94,7 @@ def plot_table(table, path):
             ends.append((NAMES[t], x[-1], y[-1], own))
         axes.set_title(name)
         plotting.log_axes(axes, "optical depth of the kernel's radius", "noise of one pass")
+        axes.xaxis.set_major_locator(plotting.FixedLocator(DEPTHS))
         plotting.label_ends(axes, ends, gap=32)
     plotting.save(made, path)
 
