@@ -9,10 +9,10 @@ namespace mote::integrators {
 using namespace core;
 
 double light_connection(const LightEnds& ends, const PathVertex& first, const LightPoint& start,
-                        const PathVertex& light, Heuristic heuristic) {
+                        const PathVertex& light, Heuristic heuristic, double light_effort) {
     if (!first.scattering.connectable() || !(light.density > 0.0)) return 0.0;
     const double sampled = ends.sampled(first.scattering.light_receiver(), start, first.distance_squared);
-    return mis_term(heuristic, sampled / light.density);
+    return mis_term(heuristic, light_effort * sampled / light.density);
 }
 
 template <bool Media>
@@ -47,7 +47,8 @@ bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& w
 template <bool Media>
 void Strategies<Media>::finish_light_start() {
     PathVertex& first = light_.vertices[1];
-    first.connection = light_connection(ends_, first, light_start_, light_.vertices[0], settings_.heuristic);
+    first.connection = light_connection(ends_, first, light_start_, light_.vertices[0], settings_.heuristic,
+                                        settings_.light_effort);
 }
 
 template <bool Media>
@@ -107,7 +108,7 @@ std::optional<std::pair<Contribution, Vec2>> Strategies<Media>::join_to_lens(std
     const double own =
         settings_.heuristic == Heuristic::none ? 1.0 : mis_term(settings_.heuristic, light_paths_);
     const auto weight_with = [&](double edge) {
-        return weight(light_.others(s - 1, by_camera * edge, before, edge, lens->wi) / own, 0.0);
+        return weight(1.0, light_.others(s - 1, by_camera * edge, before, edge, lens->wi) / own, 0.0);
     };
     const float chance = worth_a_ray(weight_with(1.0));
     if (!(chance > 0.0f)) return std::nullopt;
@@ -145,14 +146,16 @@ Contribution Strategies<Media>::hit_light(std::size_t t) {
         const PathVertex& receiver = eye_.vertices[t - 2];
         const ScatteringVertex& v = receiver.scattering;
         const double sampled =
-            receiver.delta ? 0.0 : ends_.sampled(v.light_receiver(), point, z.distance_squared);
+            receiver.delta
+                ? 0.0
+                : settings_.light_effort * ends_.sampled(v.light_receiver(), point, z.distance_squared);
         const LightEnds::Start start = ends_.start(point);
         const double by_light =
             start.of(v.geometric_cosine(direction), z.distance_squared, z.infinite) * z.edge;
         others = mis_term(settings_.heuristic, sampled / z.density) +
                  mis_term(settings_.heuristic, start.light / z.density) * eye_.through(t - 2, by_light, z);
     }
-    const float w = weight(0.0, others);
+    const float w = weight(1.0, 0.0, others);
     return {z.weight * radiance * w, layer_of(0, t), 0, int(t), w};
 }
 
@@ -172,8 +175,9 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     light_point_ = point;
     const double d2 = infinite ? 1.0 : double(light->distance) * double(light->distance);
     const double measure = point.area_measure(d2);
+    const double effort = settings_.light_effort;
     const double sampled =
-        double(choice.probability) * (light->delta ? 1.0 : double(light->pdf_solid_angle) * measure);
+        effort * double(choice.probability) * (light->delta ? 1.0 : double(light->pdf_solid_angle) * measure);
     const bool can_be_hit = choice.emitter->traits().can_be_hit();
     const double to_light =
         can_be_hit ? double(v.pdf_solid_angle(light->wi, TransportMode::radiance)) * measure : 0.0;
@@ -181,7 +185,7 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     const double by_light = start.of(v.geometric_cosine(light->wi), d2, infinite);
     const double before = reverse_of_previous(eye_, t - 1, light->wi, TransportMode::radiance);
     const auto weight_with = [&](double edge) {
-        return weight(mis_term(settings_.heuristic, to_light * edge / sampled),
+        return weight(1.0, mis_term(settings_.heuristic, to_light * edge / sampled),
                       mis_term(settings_.heuristic, start.light / sampled) *
                           eye_.others(t - 1, by_light * edge, before, edge, light->wi));
     };
@@ -193,8 +197,12 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     const Rgb seen = between(ray, v, z.state, end);
     if (is_black(seen)) return {};
     const float w = weight_with(edge_along(ray, v, z.state));
-    return {z.weight * f * light->weight * seen * (w / (choice.probability * chance)), layer_of(1, t), 1,
-            int(t), w};
+    return {z.weight * f * light->weight * seen * (w / (choice.probability * chance * float(effort))),
+            layer_of(1, t),
+            1,
+            int(t),
+            w,
+            chance};
 }
 
 template <bool Media>
@@ -224,7 +232,8 @@ bool Strategies<Media>::prepare(std::size_t s, std::size_t t, Connection& c) con
 template <bool Media>
 float Strategies<Media>::weight_of(const Connection& c, std::size_t t, double edge) const {
     if (settings_.heuristic == Heuristic::none) return 1.0f;
-    return weight(light_.others(c.s - 1, c.to_light * edge, c.before_light, edge, c.wi),
+    return weight(light_.inner_connection,
+                  light_.others(c.s - 1, c.to_light * edge, c.before_light, edge, c.wi),
                   eye_.others(t - 1, c.to_eye * edge, c.before_eye, edge, c.wi));
 }
 
@@ -237,7 +246,12 @@ Contribution Strategies<Media>::test(const Connection& c, std::size_t t) {
     const Rgb seen = between(segment, z.scattering, z.state, shadow_end(segment.origin, segment.t_max));
     if (is_black(seen)) return {};
     const float w = weight_of(c, t, edge_along(segment, z.scattering, z.state));
-    return {c.light * seen * (w / chance), layer_of(c.s, t), int(c.s), int(t), w};
+    return {c.light * seen * (w / (chance * float(settings_.connection_effort))),
+            layer_of(c.s, t),
+            int(c.s),
+            int(t),
+            w,
+            chance};
 }
 
 template class Strategies<true>;

@@ -17,6 +17,8 @@ struct BidirectionalSettings {
                                    ///< their weight
     bool connections = true;       ///< false: subpaths are merged only; light seen directly is found as ever
     MergeSettings merging;         ///< none by default
+    /// Probabilities with which a light is sampled for an eye vertex, and a connection (s, t > 1) tested.
+    double light_effort = 1.0, connection_effort = 1.0;
     int strategies = 0;  ///< paths of up to so many edges are also sorted by their strategy; 0: none
 };
 
@@ -26,11 +28,20 @@ struct Contribution {
     Transport layer{};
     int s = 0, t = 0;
     float weight = 0.0f;  ///< of multiple importance sampling, in `light`
+    float chance =
+        1.0f;  ///< with which it was tested, if it was sampled among others; `light` holds its inverse
+    std::optional<Merge> merge{};  ///< the technique where subpaths were merged
+    std::uint32_t query = 0;       ///< the same for merges that were found together
 };
 
 /// PathVertex::connection of the first vertex behind the light, `start`, which is vertex 0.
 double light_connection(const LightEnds& ends, const PathVertex& first, const LightPoint& start,
-                        const PathVertex& light, Heuristic heuristic);
+                        const PathVertex& light, Heuristic heuristic, double light_effort);
+
+/// Counted work (core/render/counted_work.h) of light that was sampled for eye vertices, and of connections.
+struct ConnectionWork {
+    double light = 0.0, connection = 0.0;
+};
 
 template <bool Media>
 class Strategies {
@@ -48,6 +59,8 @@ class Strategies {
         light_.heuristic = eye_.heuristic = settings.heuristic;
         light_.connects = eye_.connects = settings.connections;
         light_.merging = eye_.merging = settings.merging;
+        light_.inner_connection = eye_.inner_connection =
+            mis_term(settings.heuristic, settings.connection_effort);
         light_.from_light = true;
     }
 
@@ -94,6 +107,7 @@ class Strategies {
     }
     const LightPoint& light_point() const { return light_point_; }  ///< that was sampled, or hit
     const LightPoint& light_start() const { return light_start_; }  ///< of the light path
+    const ConnectionWork& work() const { return work_; }            ///< so far
     const core::Vec3& lens_point() const { return lens_point_; }    ///< that a light path is joined to
 
   private:
@@ -116,10 +130,16 @@ class Strategies {
     Contribution test(const Connection& connection, std::size_t t);
     template <typename Found>
     void connect(std::size_t t, const Found& found);
+    bool with_effort(double effort) { return effort >= 1.0 || context_.rng.next_float() < float(effort); }
+    /// Counted work so far.
+    double spent() const {
+        return 0.5 * double(context_.rays.occlusion + context_.rays.boundary) +
+               0.25 * double(context_.tracking.lookups);
+    }
 
-    /// 1 over the sum of all techniques' h in terms of this one's.
-    static float weight(double fewer_from_light, double fewer_from_eye) {
-        return float(1.0 / (1.0 + fewer_from_light + fewer_from_eye));
+    /// `own` over the sum of all techniques' h, in terms of this one's without its effort.
+    static float weight(double own, double fewer_from_light, double fewer_from_eye) {
+        return float(own / (own + fewer_from_light + fewer_from_eye));
     }
     Transport layer_of(std::size_t s, std::size_t t) const { return layer_of(s, eye_.vertices[t - 1]); }
     bool wanted(std::size_t s, std::size_t t) const { return settings_.limits.wanted[layer_of(s, t)]; }
@@ -145,6 +165,7 @@ class Strategies {
     bool pinhole_ = scene_.camera().traits().delta_position;
     Subpath light_, eye_;
     std::vector<Connection> connections_;
+    ConnectionWork work_;
     LightPoint light_start_, light_point_;
     core::Vec3 lens_point_{0.0f};
 };
@@ -209,8 +230,12 @@ void Strategies<Media>::trace_eye_path(const EyeRay& eye, const Found& found, co
         if (last.infinite) return;
         const core::Vec2 choice = sampler.next_2d(), u = sampler.next_2d();
         if (!last.scattering.connectable() || !settings_.connections) continue;
-        if (allowed(1, t) && wanted(1, t)) found(draw_light(t, choice.x, u));
-        connect(t, found);
+        const double before = spent();
+        if (allowed(1, t) && wanted(1, t) && with_effort(settings_.light_effort))
+            found(draw_light(t, choice.x, u));
+        const double between = spent();
+        if (with_effort(settings_.connection_effort)) connect(t, found);
+        work_.light += between - before, work_.connection += spent() - between;
     }
 }
 
@@ -230,13 +255,16 @@ void Strategies<Media>::connect(std::size_t t, const Found& found) {
             sum += c.expected, connections_.push_back(c);
     }
     if (connections_.empty()) return;
+    work_.connection += 0.25 * double(connections_.size());
     float left = context_.rng.next_float() * sum;
     std::size_t i = 0;
     while (i + 1 < connections_.size() && left >= connections_[i].expected)
         left -= connections_[i++].expected;
     Connection& sampled = connections_[i];
     sampled.light *= sum / sampled.expected;
-    found(test(sampled, t));
+    Contribution c = test(sampled, t);
+    c.chance *= sampled.expected / sum;
+    found(c);
 }
 
 }  // namespace mote::integrators

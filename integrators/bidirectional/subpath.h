@@ -67,7 +67,9 @@ struct Subpath {
     /// h of the technique that takes no vertex from this end: of a light, 1 if it can be hit.
     double without = 0.0;
     bool from_light = false;
-    bool connects = true;   ///< false: subpaths are merged only
+    bool connects = true;  ///< false: subpaths are merged only
+    /// PathVertex::connection of vertices behind the first: h of BidirectionalSettings::connection_effort.
+    double inner_connection = 1.0;
     MergeSettings merging;  ///< none by default
 
     std::size_t size() const { return vertices.size(); }

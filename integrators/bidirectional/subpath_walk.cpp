@@ -109,6 +109,7 @@ void SubpathWalk<Media>::append(const WalkEvent& event, const MediumState& start
     PathVertex& vertex = path_.vertices[k];
     const PathVertex& previous = path_.vertices[k - 1];
     vertex.state = state_, vertex.weight = channel_throughput();
+    vertex.connection = path_.inner_connection;
     vertex.infinite = event.kind == WalkEvent::Kind::escaped;
     if (vertex.infinite)
         vertex.scattering.wo = -ray_.direction;

@@ -15,6 +15,7 @@
 #include "integrators/bidirectional/strategies.h"
 #include "integrators/upbp/light_beams.h"
 #include "integrators/upbp/light_vertices.h"
+#include "integrators/upbp/technique_work.h"
 
 namespace mote::integrators {
 
@@ -39,33 +40,47 @@ class Merges {
         if constexpr (Media)
             for (const Beam& beam : walk.beams()) {
                 start_on_beam(beam, on_eye_);
-                on_eye_.connection = beam.index == 1 ? strategies_.lens_connection() : 1.0;
-                if (settings_.merging.uses(Merge::point_beam_2d)) with_points(beam, found);
-                if (settings_.merging.uses(Merge::beam_beam_1d)) with_beams(beam, found);
+                on_eye_.connection =
+                    beam.index == 1 ? strategies_.lens_connection() : strategies_.eye_path().inner_connection;
+                seek(Merge::point_beam_2d, [&] { with_points(beam, found); });
+                seek(Merge::beam_beam_1d, [&] { with_beams(beam, found); });
             }
         const Subpath& eye = strategies_.eye_path();
         if (!continues || eye.vertices.back().infinite) return;
-        if (eye.vertices.back().scattering.connectable()) at_vertex(eye, found);
+        const core::ScatteringVertex& z = eye.vertices.back().scattering;
+        if (!z.connectable()) return;
+        const Merge technique = z.on_surface() ? Merge::surface : Merge::point_point_3d;
+        seek(technique, [&] { at_vertex(technique, eye, found); });
     }
+    const TechniqueWork& work() const { return work_; }  ///< so far
 
   private:
-    template <typename Found>
-    void at_vertex(const Subpath& eye, const Found& found) {
-        const PathVertex& z = eye.vertices.back();
-        const bool surface = z.scattering.on_surface();
-        const Merge technique = surface ? Merge::surface : Merge::point_point_3d;
+    /// Calls merges() with the probability that is the technique's effort, and counts what that takes.
+    template <typename F>
+    void seek(Merge technique, const F& merges) {
         if (!settings_.merging.uses(technique)) return;
+        const double effort = settings_.merging.effort[std::size_t(technique)];
+        if (effort < 1.0 && !(context_.rng.next_float() < float(effort))) return;
+        const std::uint64_t lookups = context_.tracking.lookups;
+        candidates_ = 0, ++query_;
+        merges();
+        work_.add_query(technique, candidates_, context_.tracking.lookups - lookups);
+    }
+    template <typename Found>
+    void at_vertex(Merge technique, const Subpath& eye, const Found& found) {
+        const PathVertex& z = eye.vertices.back();
+        const bool surface = technique == Merge::surface;
         const MergeVertex at{surface, true, z.sigma_t};
         const double kernel = merge_kernel(technique, at, settings_.merging);
-        lights_.for_each_near(surface, z.scattering.position,
-                              settings_.merging.radius[std::size_t(technique)], near_,
-                              [&](const LightVertex& v) {
-                                  const PathVertex& y = lights_.vertex(v);
-                                  if (surface ? !same_side(y, z) : y.scattering.phase != z.scattering.phase)
-                                      return;
-                                  const core::Rgb once = surface ? core::Rgb(1.0f) : spared_albedo(z);
-                                  add(lights_.path(v), v.index, y, z, eye.size() - 1, kernel, once, found);
-                              });
+        lights_.for_each_near(
+            surface, z.scattering.position, settings_.merging.radius[std::size_t(technique)], near_,
+            [&](const LightVertex& v) {
+                ++candidates_;
+                const PathVertex& y = lights_.vertex(v);
+                if (surface ? !same_side(y, z) : y.scattering.phase != z.scattering.phase) return;
+                const core::Rgb once = surface ? core::Rgb(1.0f) : spared_albedo(z);
+                add(technique, lights_.path(v), v.index, y, z, eye.size() - 1, kernel, once, found);
+            });
     }
     template <typename Found>
     void with_points(const Beam& beam, const Found& found) {
@@ -73,6 +88,7 @@ class Merges {
         PathVertex& z = on_eye_;
         BeamWeight weight(beam, length, context_);
         lights_.for_each_along(query_on(beam), near_beam_, [&](const LightVertex& v, float t) {
+            ++candidates_;
             const PathVertex& y = lights_.vertex(v);
             z.weight = weight.advance_to(t);
             if (core::is_black(z.weight) || !weight.medium()) return;
@@ -82,7 +98,7 @@ class Merges {
             copy_medium(y, z);
             const double kernel =
                 merge_kernel(Merge::point_beam_2d, {false, true, z.sigma_t, 1.0, z.edge}, settings_.merging);
-            add(lights_.path(v), v.index, y, z, beam.index, kernel,
+            add(Merge::point_beam_2d, lights_.path(v), v.index, y, z, beam.index, kernel,
                 core::Rgb(float(spared_density(length, z.edge))), found);
         });
     }
@@ -93,6 +109,7 @@ class Merges {
         BeamWeight weight(beam, merging.eye_beams, context_);
         beams_.crossings(query_on(beam), crossings_);
         for (const LightBeams::Hit& hit : crossings_) {
+            ++candidates_;
             const LightBeam& light = beams_.beam(hit);
             if (!strategies_.allowed(light.beam.index, beam.index + 1)) continue;
             z.weight = weight.advance_to(hit.t);
@@ -112,8 +129,8 @@ class Merges {
                 Merge::beam_beam_1d, {false, true, z.sigma_t, y.edge, z.edge, double(hit.sine)}, merging);
             const double spare = spared_density(merging.light_beams, y.edge) *
                                  spared_density(merging.eye_beams, z.edge) / z.sigma_t;
-            add(beams_.path(light), light.beam.index, y, z, beam.index, kernel, z.sigma_s * float(spare),
-                found);
+            add(Merge::beam_beam_1d, beams_.path(light), light.beam.index, y, z, beam.index, kernel,
+                z.sigma_s * float(spare), found);
         }
     }
     void move_on_light_beam(const LightBeam& light, float s) {
@@ -122,9 +139,9 @@ class Merges {
         start_on_beam(light.beam, y);
         y.scattering.phase = on_eye_.scattering.phase;
         move_on_beam(scene_, path, light.beam, s, context_.tracking, y);
-        y.connection = light.beam.index > 1
-                           ? 1.0
-                           : light_connection(ends_, y, light.start, path.vertices[0], path.heuristic);
+        y.connection = light.beam.index > 1 ? path.inner_connection
+                                            : light_connection(ends_, y, light.start, path.vertices[0],
+                                                               path.heuristic, settings_.light_effort);
     }
     core::Ray query_on(const Beam& beam) const {
         core::Ray ray = beam.ray;
@@ -144,15 +161,16 @@ class Merges {
     }
 
     template <typename Found>
-    void add(const Subpath& light, std::size_t i, const PathVertex& y, const PathVertex& z, std::size_t j,
-             double kernel, const core::Rgb& factor, const Found& found) {
+    void add(Merge technique, const Subpath& light, std::size_t i, const PathVertex& y, const PathVertex& z,
+             std::size_t j, double kernel, const core::Rgb& factor, const Found& found) {
         if (!wanted(i, z, j)) return;
         const core::Rgb f = scattered(y, z);
         if (core::is_black(f)) return;
         const double over = weight_over_kernel(light, i, y, strategies_.eye_path(), j, z, kernel);
         Contribution c;
         c.light = y.weight * z.weight * f * factor * float(over);
-        c.layer = Strategies<Media>::layer_of(i, z), c.weight = float(over * kernel);
+        c.layer = Strategies<Media>::layer_of(i, z), c.weight = float(over * kernel), c.merge = technique,
+        c.query = query_;
         found(c);
     }
 
@@ -201,6 +219,9 @@ class Merges {
     std::vector<core::RayFacingDiscs::Hit> near_beam_;
     std::vector<LightBeams::Hit> crossings_;
     PathVertex on_eye_, on_light_;  ///< of beams; reused
+    std::size_t candidates_ = 0;    ///< of this query
+    std::uint32_t query_ = 0;       ///< its number
+    TechniqueWork work_;
 };
 
 }  // namespace mote::integrators
