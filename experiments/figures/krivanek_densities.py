@@ -3,9 +3,10 @@
 
 Each of pp3d, pb2d and bb1d renders alone by mote_upbp: light scattered once by a ball of fog, and all light in a ball of glass
 full of fog, like the still life of the paper. Noise is the standard deviation of one pass over the mean, both rms over pixels,
-without bias for the mean's own noise; its standard error is a jackknife over seeds. A film of 10 x 10 pixels has 100 light paths a pass: with as many, and with alpha = 1, all
-techniques have kernels of one radius in every pass (integrators/upbp/merge_schedule.h). Exit code 0: all is as documented; 1: it
-is not; 2: wrong usage, or mote is missing. A full run takes five minutes of one core, --quick half a minute.
+without bias for the mean's own noise; its standard error is a jackknife over seeds. A film of 10 x 10 pixels has 100 light paths
+a pass: with as many, and with alpha = 1, all techniques have kernels of one radius in every pass
+(integrators/upbp/merge_schedule.h). Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full
+run takes five minutes of one core, --quick half a minute.
 
     experiments/figures/krivanek_densities.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
