@@ -13,6 +13,7 @@ from exr import read_exr
 
 PEERS = Path(__file__).resolve().parent.parent
 BPY_ENVIRONMENT = PEERS.parent.parent / "build" / "bpy_env"
+HANGS = 3600  # seconds after which a program is ended: Mitsuba's threads have been seen to wait for each other
 sys.path.insert(0, str(PEERS / "cycles"))
 from flat_scene import vdb_volumes  # noqa: E402
 from tight_boundaries import tighten  # noqa: E402
@@ -75,7 +76,7 @@ def run(command, job, folder, environment=None):
     log = folder / "log.json"
     log.unlink(missing_ok=True)
     (folder / "job.json").write_text(json.dumps(job, indent=1))
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=HANGS)
     if done.returncode:
         raise RuntimeError(f"{' '.join(command)}: {done.stderr.strip()[-2000:]}")
     return json.loads(log.read_text()) if log.is_file() else None
