@@ -49,12 +49,14 @@ class Renderer(Adapter):
         if done.returncode:
             raise RuntimeError(done.stderr.strip() or f"mote ended with {done.returncode}")
         cpu = processor_seconds() - cpu
-        seconds = json.loads(stats.read_text())["seconds"]
+        said = json.loads(stats.read_text())
+        seconds = said["seconds"]
         stats.unlink()
         keep_beauty(path, denoise)
         load = seconds["load"] + seconds.get("write", 0.0)
         wall = seconds["build"] + seconds["render"] + seconds["finish"] + seconds.get("denoise", 0.0)
-        return Run(seed, path.name, job.passes, wall, cpu, load, began + seconds["load"])
+        # mote_layers renders each of its parts at least once, which may be more passes.
+        return Run(seed, path.name, said["passes"], wall, cpu, load, began + seconds["load"])
 
 
 def keep_beauty(path, denoise):
