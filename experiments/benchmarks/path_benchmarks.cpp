@@ -37,28 +37,6 @@ class Renderer {
     const std::atomic<bool> cancelled_{false};
 };
 
-/// The rays of a path, one by one and in its order: nothing else is known to a path tracer in time.
-double trace_bare(const std::vector<LoggedRay>& rays) {
-    float sum = 0.0f;
-    const double seconds = seconds_of([&] {
-        for (const LoggedRay& logged : rays) {
-            if (logged.occlusion) {
-                RTCRay ray = logged.ray;
-                bare_occluded(logged.scene, ray);
-                sum += ray.tfar;
-            } else {
-                RTCRayHit query;
-                query.ray = logged.ray;
-                query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-                bare_intersect(logged.scene, query);
-                sum += query.ray.tfar;
-            }
-        }
-    });
-    benchmark::DoNotOptimize(sum);
-    return seconds;
-}
-
 std::unique_ptr<Scene> half_million() { return make_room("path", width, height); }
 
 /// 32 triangles: rays are cheap, and what a path tracer does besides is dear.

@@ -1,5 +1,7 @@
 #include "experiments/benchmarks/ray_log.h"
 
+#include "experiments/benchmarks/turns.h"
+
 // Names made by the linker's --wrap: __real_ is Embree's own function.
 #if RTC_VERSION_MAJOR >= 4
 using Intersect = RTCIntersectArguments;
@@ -89,6 +91,27 @@ void bare_occluded_stream(RTCScene scene, RTCRay* rays, unsigned count, bool coh
     __real_rtcOccluded1M(scene, &context, rays, count, sizeof(RTCRay));
 }
 #endif
+
+double trace_bare(const std::vector<LoggedRay>& rays) {
+    float sum = 0.0f;
+    const double seconds = seconds_of([&] {
+        for (const LoggedRay& logged : rays) {
+            if (logged.occlusion) {
+                RTCRay ray = logged.ray;
+                bare_occluded(logged.scene, ray);
+                sum += ray.tfar;
+            } else {
+                RTCRayHit query;
+                query.ray = logged.ray;
+                query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+                bare_intersect(logged.scene, query);
+                sum += query.ray.tfar;
+            }
+        }
+    });
+    benchmark::DoNotOptimize(sum);
+    return seconds;
+}
 
 }  // namespace mote::benchmarks
 

@@ -36,4 +36,8 @@ void bare_occluded(const int* valid, RTCScene scene, RTCRay16& rays, bool cohere
 void bare_occluded_stream(RTCScene scene, RTCRay* rays, unsigned count, bool coherent);
 #endif
 
+/// Seconds that Embree takes for logged rays, one by one and in their order: nothing else is known to a path
+/// tracer in time.
+double trace_bare(const std::vector<LoggedRay>& rays);
+
 }  // namespace mote::benchmarks

@@ -55,21 +55,6 @@ class LightPaths {
     std::vector<Subpath> subpaths_;
 };
 
-double trace_bare(const std::vector<LoggedRay>& rays) {
-    float sum = 0.0f;
-    const double seconds = seconds_of([&] {
-        for (const LoggedRay& logged : rays) {
-            RTCRayHit query;
-            query.ray = logged.ray;
-            query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-            bare_intersect(logged.scene, query);
-            sum += query.ray.tfar;
-        }
-    });
-    benchmark::DoNotOptimize(sum);
-    return seconds;
-}
-
 void light_subpath_against_bare_rays(benchmark::State& state) {
     LightPaths light;
     RayLog log;
