@@ -6,8 +6,9 @@ namespace mote::integrators {
 
 double merge_kernel(Merge technique, const MergeVertex& v, const MergeSettings& settings) {
     constexpr double pi = std::numbers::pi;
-    const double r = settings.radius[std::size_t(technique)];
-    const double n = settings.light_subpaths[std::size_t(technique)];
+    const auto t = std::size_t(technique);
+    const double r = settings.radius[t];
+    const double n = settings.light_subpaths[t] * settings.effort[t];
     if (!v.connectable || v.on_surface != (technique == Merge::surface) || !(r > 0.0)) return 0.0;
     if (!v.on_surface && !(v.sigma_t > 0.0)) return 0.0;
     switch (technique) {

@@ -12,9 +12,9 @@
 //   photon, query beam 2D (a sigma_t) (b / tau') n pi r^2 / sigma_t         K = n pi r^2 / tau'
 //   beam, beam 1D         (a / tau') (b / tau') n 2 r sin / sigma_t         K = n 2 r sin / (sigma_t tau'
 //   tau')
-// A point on a beam costs no density of its distance. tau' = tau of that edge for long beams, which reach
-// the next surface; 1 for short ones, which are as long as the sampled distance: the point is then reached
-// with probability tau.
+// Where merges are sought with probability q (`effort`), q n replaces n. A point on a beam costs no density
+// of its distance. tau' = tau of that edge for long beams, which reach the next surface; 1 for short ones,
+// which are as long as the sampled distance: the point is then reached with probability tau.
 #pragma once
 
 #include <algorithm>
@@ -41,6 +41,8 @@ struct MergeSettings {
     std::array<double, merge_count> radius{};  ///< [m]; 0: the technique is not used
     /// n of a pass; each may merge with every eye subpath.
     std::array<double, merge_count> light_subpaths{1.0, 1.0, 1.0, 1.0};
+    /// Probability with which a technique's merges are sought at a vertex or along a beam of the eye.
+    std::array<double, merge_count> effort{1.0, 1.0, 1.0, 1.0};
     BeamLength light_beams = BeamLength::short_beam, eye_beams = BeamLength::long_beam;
 
     bool uses(Merge technique) const { return radius[std::size_t(technique)] > 0.0; }

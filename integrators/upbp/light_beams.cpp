@@ -79,10 +79,12 @@ void LightBeams::cut_part(std::uint32_t beam, const Ray& part, float length) {
     }
 }
 
-void LightBeams::crossings(const Ray& ray, std::vector<Hit>& hits) const {
+std::size_t LightBeams::crossings(const Ray& ray, std::vector<Hit>& hits) const {
     hits.clear();
-    if (!hierarchy_ || !(ray.t_min < ray.t_max)) return;
+    std::size_t tested = 0;
+    if (!hierarchy_ || !(ray.t_min < ray.t_max)) return tested;
     hierarchy_->for_each_box(ray, [&](std::uint32_t box) {
+        ++tested;
         const Piece& piece = pieces_[box];
         const auto c = crossing_of(ray, beams_[piece.beam]->beam.ray);
         if (!c || !(c->apart < radius_)) return;
@@ -94,6 +96,7 @@ void LightBeams::crossings(const Ray& ray, std::vector<Hit>& hits) const {
               [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.beam < b.beam; });
     const auto same = [](const Hit& a, const Hit& b) { return a.beam == b.beam; };
     hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());  // Embree may visit a box twice
+    return tested;
 }
 
 }  // namespace mote::integrators

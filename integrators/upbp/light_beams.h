@@ -42,7 +42,8 @@ class LightBeams {
                BeamLength length, double radius, double size);
 
     /// All beams that the ray passes nearer than the radius, by t; equal ones by index. Clears `hits` first.
-    void crossings(const core::Ray& ray, std::vector<Hit>& hits) const;
+    /// Returns how many pieces were tested.
+    std::size_t crossings(const core::Ray& ray, std::vector<Hit>& hits) const;
     const LightBeam& beam(const Hit& hit) const { return *beams_[hit.beam]; }
     const Subpath& path(const LightBeam& beam) const { return (*paths_)[beam.path]; }
     std::size_t size() const { return beams_.size(); }

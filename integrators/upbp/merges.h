@@ -15,6 +15,7 @@
 #include "integrators/bidirectional/strategies.h"
 #include "integrators/upbp/light_beams.h"
 #include "integrators/upbp/light_vertices.h"
+#include "integrators/upbp/merge_efforts.h"
 
 namespace mote::integrators {
 
@@ -40,26 +41,40 @@ class Merges {
             for (const Beam& beam : walk.beams()) {
                 start_on_beam(beam, on_eye_);
                 on_eye_.connection = beam.index == 1 ? strategies_.lens_connection() : 1.0;
-                if (settings_.merging.uses(Merge::point_beam_2d)) with_points(beam, found);
-                if (settings_.merging.uses(Merge::beam_beam_1d)) with_beams(beam, found);
+                seek(Merge::point_beam_2d, [&] { with_points(beam, found); });
+                seek(Merge::beam_beam_1d, [&] { with_beams(beam, found); });
             }
         const Subpath& eye = strategies_.eye_path();
         if (!continues || eye.vertices.back().infinite) return;
-        if (eye.vertices.back().scattering.connectable()) at_vertex(eye, found);
+        const core::ScatteringVertex& z = eye.vertices.back().scattering;
+        if (!z.connectable()) return;
+        const Merge technique = z.on_surface() ? Merge::surface : Merge::point_point_3d;
+        seek(technique, [&] { at_vertex(technique, eye, found); });
     }
+    const MergeWork& work() const { return work_; }  ///< so far
 
   private:
-    template <typename Found>
-    void at_vertex(const Subpath& eye, const Found& found) {
-        const PathVertex& z = eye.vertices.back();
-        const bool surface = z.scattering.on_surface();
-        const Merge technique = surface ? Merge::surface : Merge::point_point_3d;
+    /// Calls merges() with the probability that is the technique's effort, and counts what that takes.
+    template <typename F>
+    void seek(Merge technique, const F& merges) {
         if (!settings_.merging.uses(technique)) return;
+        const double effort = settings_.merging.effort[std::size_t(technique)];
+        if (effort < 1.0 && !(context_.rng.next_float() < float(effort))) return;
+        const std::uint64_t lookups = context_.tracking.lookups;
+        tested_ = found_ = 0;
+        merges();
+        work_.add_query(technique, tested_, found_, context_.tracking.lookups - lookups);
+    }
+    template <typename Found>
+    void at_vertex(Merge technique, const Subpath& eye, const Found& found) {
+        const PathVertex& z = eye.vertices.back();
+        const bool surface = technique == Merge::surface;
         const MergeVertex at{surface, true, z.sigma_t};
         const double kernel = merge_kernel(technique, at, settings_.merging);
         lights_.for_each_near(surface, z.scattering.position,
                               settings_.merging.radius[std::size_t(technique)], near_,
                               [&](const LightVertex& v) {
+                                  ++found_;
                                   const PathVertex& y = lights_.vertex(v);
                                   if (surface ? !same_side(y, z) : y.scattering.phase != z.scattering.phase)
                                       return;
@@ -73,6 +88,7 @@ class Merges {
         PathVertex& z = on_eye_;
         BeamWeight weight(beam, length, context_);
         lights_.for_each_along(query_on(beam), near_beam_, [&](const LightVertex& v, float t) {
+            ++found_;
             const PathVertex& y = lights_.vertex(v);
             z.weight = weight.advance_to(t);
             if (core::is_black(z.weight) || !weight.medium()) return;
@@ -91,8 +107,9 @@ class Merges {
         const MergeSettings& merging = settings_.merging;
         PathVertex &y = on_light_, &z = on_eye_;
         BeamWeight weight(beam, merging.eye_beams, context_);
-        beams_.crossings(query_on(beam), crossings_);
+        tested_ += beams_.crossings(query_on(beam), crossings_);
         for (const LightBeams::Hit& hit : crossings_) {
+            ++found_;
             const LightBeam& light = beams_.beam(hit);
             if (!strategies_.allowed(light.beam.index, beam.index + 1)) continue;
             z.weight = weight.advance_to(hit.t);
@@ -200,7 +217,9 @@ class Merges {
     std::vector<core::KdTree::Neighbour> near_;
     std::vector<core::RayFacingDiscs::Hit> near_beam_;
     std::vector<LightBeams::Hit> crossings_;
-    PathVertex on_eye_, on_light_;  ///< of beams; reused
+    PathVertex on_eye_, on_light_;        ///< of beams; reused
+    std::size_t tested_ = 0, found_ = 0;  ///< by this query
+    MergeWork work_;
 };
 
 }  // namespace mote::integrators

@@ -6,6 +6,12 @@
 
 namespace mote::integrators {
 
+/// Probabilities with which merges are sought (merge_efforts.h).
+enum class Efforts : std::uint8_t {
+    automatic,  ///< by a trial pass
+    equal       ///< all are 1
+};
+
 struct UpbpSettings {
     EyePathLimits limits;
     Heuristic heuristic = Heuristic::balance;
@@ -14,6 +20,7 @@ struct UpbpSettings {
     double radius = 0.01;      ///< of the first pass, over the radius of the scene's bounds
     double alpha = 2.0 / 3.0;  ///< how fast kernels shrink
     bool all_connections = false;
+    Efforts efforts = Efforts::automatic;
 };
 
 /// Long where short beams are not possible in the scene (beam.h).

@@ -37,7 +37,8 @@ std::string refused_subpaths(const Scene& scene, int width, int height, double b
     RenderOptions options{.seed = 3, .width = width, .height = height};
     options.memory = MemoryBudget(bytes);
     const auto integrator =
-        integrator_from(R"(<integrator type="mote_upbp"><boolean name="bb1d" value="false"/></integrator>)");
+        integrator_from(R"(<integrator type="mote_upbp"><boolean name="bb1d" value="false"/>
+                           <string name="efforts" value="equal"/></integrator>)");
     const bool small = width * height < 100000;  // many are refused before any pixel is written
     PassImage image(small ? width : 1, small ? height : 1, integrator->layers(scene).size());
     const std::atomic<bool> cancelled{false};
