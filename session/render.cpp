@@ -148,8 +148,10 @@ class RenderWork {
                                   scene_.report().approximations};
         Rendered rendered;
         rendered.image.width = result.film.width(), rendered.image.height = result.film.height();
-        if (result.film.pass_count() > 0 && !settings_.range)
+        if (result.film.pass_count() > 0 && !settings_.range) {
+            const core::Stopwatch stopwatch(result.statistics.seconds["finish"]);
             rendered.image = core::with_memory_for("the picture", [&] { return picture(report); });
+        }
         denoise(rendered.image, result);
         rendered.statistics = statistics_json(report);
         if (!settings_.checkpoint.empty() && !result.interrupted && !settings_.keep_checkpoint)
