@@ -134,7 +134,8 @@ class Scene final : public LitScene {
     MediumState medium_state_near(const Vec3& p, const Medium* declared, const Shape* excluded) const;
     MediumState area_light_state(const Emitter& emitter, const Shape& shape, const Vec3& p,
                                  const Vec3& normal) const;
-    const Medium* outside_medium(const MediumState& inside, ProbeRays& probes, const Shape* excluded) const;
+    const Medium* outside_medium(const MediumState& inside, const Vec3& p, ProbeRays& probes,
+                                 const Shape* excluded) const;
     template <typename Segment, typename Pane>
     const Medium* for_each_segment(const Ray& ray, const MediumState& state, const Segment& segment,
                                    const Pane& pane) const;

@@ -105,6 +105,34 @@ bool inside_closed(const Shape& shape, bool inward, ProbeRays& probes) {
     return inside > outside;
 }
 
+/// The nearest surface that names what is on our side of it: seen, and behind something opaque.
+struct NamedOutside {
+    struct Nearest {
+        float t = infinity;
+        const Medium* medium = nullptr;
+    } seen, hidden;  // hidden: taken only when nothing is seen
+
+    /// `state`: the closed shapes around the point that the ray begins at. `excluded`: the shape it lies on.
+    void look(const std::vector<SurfaceHit>& hits, const Vec3& direction, MediumState state,
+              const Shape* excluded) {
+        bool blocked = false;
+        for (const SurfaceHit& hit : hits) {
+            const Shape& shape = *hit.shape;
+            const bool inner_side = leaves(hit, direction);
+            const bool names = shape.has_medium_boundary && hit.shape != excluded && !state.inside_any() &&
+                               (!shape.closed() || (!inner_side && shape.exterior));
+            Nearest& nearest = blocked ? hidden : seen;
+            if (names) {
+                if (hit.t < nearest.t)
+                    nearest = {hit.t, (inner_side ? shape.interior : shape.exterior).get()};
+                return;
+            }
+            if (shape.closed() && hit.shape != excluded) state.cross(shape, hit.geometric_normal, direction);
+            blocked = blocked || !shape.bsdf->traits().passes_straight();
+        }
+    }
+};
+
 }  // namespace
 
 void Scene::find_boundaries() {
@@ -155,39 +183,29 @@ MediumState Scene::medium_state_near(const Vec3& p, const Medium* declared, cons
         }
     if (outside_is_parted_)
         state.set_outside(declared && !declared_is_inside ? declared
-                                                          : outside_medium(state, probes, excluded));
+                                                          : outside_medium(state, p, probes, excluded));
     return state;
 }
 
 /// Where open walls part the outside of all closed shapes: the medium that the nearest surface names on our
 /// side. `inside`: the closed shapes around the point.
-const Medium* Scene::outside_medium(const MediumState& inside, ProbeRays& probes,
+const Medium* Scene::outside_medium(const MediumState& inside, const Vec3& p, ProbeRays& probes,
                                     const Shape* excluded) const {
-    struct Nearest {
-        float t = infinity;
-        const Medium* medium = nullptr;
-    } seen, hidden;  // hidden: behind something opaque, taken only when nothing is seen
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        MediumState state = inside;
-        bool blocked = false;
-        for (const SurfaceHit& hit : probes.hits(i)) {
-            const Shape& shape = *hit.shape;
-            const bool inner_side = leaves(hit, probes.direction(i));
-            const bool names = shape.has_medium_boundary && hit.shape != excluded && !state.inside_any() &&
-                               (!shape.closed() || (!inner_side && shape.exterior));
-            Nearest& nearest = blocked ? hidden : seen;
-            if (names) {
-                if (hit.t < nearest.t)
-                    nearest = {hit.t, (inner_side ? shape.interior : shape.exterior).get()};
-                break;
-            }
-            if (shape.closed() && hit.shape != excluded)
-                state.cross(shape, hit.geometric_normal, probes.direction(i));
-            blocked = blocked || !shape.bsdf->traits().passes_straight();
+    NamedOutside named;
+    for (std::size_t i = 0; i < probes.size(); ++i)
+        named.look(probes.hits(i), probes.direction(i), inside, excluded);
+    // A wall that is far away, or small, is between the probes.
+    if (named.seen.t == infinity)
+        for (const Boundary& b : boundaries_) {
+            if (b.closed || b.shape == excluded) continue;
+            const Vec3 to_wall = b.shape->sample_area({0.37f, 0.61f}).position - p;
+            const float distance = glm::length(to_wall);
+            if (!(distance > 0.0f)) continue;
+            const Vec3 direction = to_wall / distance;
+            named.look(hits_along(*rays_, Ray{p, direction, 0.0f, infinity}), direction, inside, excluded);
         }
-    }
-    if (seen.t < infinity) return seen.medium;
-    if (hidden.t < infinity) return hidden.medium;
+    if (named.seen.t < infinity) return named.seen.medium;
+    if (named.hidden.t < infinity) return named.hidden.medium;
     return outermost_;
 }
 

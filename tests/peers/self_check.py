@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "experiments" / part) for part in ("peers/cycles", "peers/real_sizes", "figures")]
 from doubling import next_passes  # noqa: E402
 from flat_scene import matrix_of, read_flat_scene, vdb_volumes  # noqa: E402
-from meshes import cube, mesh_of, read_ply  # noqa: E402
+from meshes import cube, mesh_of, read_ply, sphere  # noqa: E402
 from rough_interface import RoughInterface, boundary  # noqa: E402
 from tight_boundaries import tighten  # noqa: E402
 from times import broken_pixels, noise_alone, time_to  # noqa: E402
@@ -64,11 +64,12 @@ def flat(inside):
 
 
 def meshes():
-    box = cube()
-    corners = box.positions[box.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    check((np.einsum("ij,ij->i", normals, corners.mean(axis=1)) > 0).all(), "a face of the cube looks inwards")
-    near(0.5 * np.linalg.norm(normals, axis=1).sum(), 24, "the area of the cube")
+    center = np.array([1.0, 2.0, 3.0])
+    for name, mesh, area in (("cube", cube(), 24), ("ball", sphere(np.zeros(3), 2.0), 16 * np.pi), ("moved ball", sphere(center, 2.0), 16 * np.pi)):
+        corners = mesh.positions[mesh.triangles] - (center if name == "moved ball" else 0.0)
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        check((np.einsum("ij,ij->i", normals, corners.mean(axis=1)) > 0).all(), f"a face of the {name} looks inwards")
+        near(0.5 * np.linalg.norm(normals, axis=1).sum(), area, f"the area of the {name}", 1e-9 * area)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "one.ply"
         head = ("ply\nformat binary_little_endian 1.0\nelement vertex 3\n"

@@ -80,7 +80,7 @@ def checkerboard(nodes, texture):
 def glossy(nodes, bsdf, colour):
     """Blender squares its roughness; Mitsuba's default is Beckmann."""
     alpha = float(bsdf.get("alpha", 0.1)) if bsdf.type.startswith("rough") else 0.0
-    kind = {"ggx": "GGX", "beckmann": "BECKMANN"}[bsdf.get("distribution", "beckmann")] if alpha else "SHARP"
+    kind = {"ggx": "GGX", "beckmann": "BECKMANN"}[bsdf.get("distribution", "beckmann")] if alpha else "GGX"  # of roughness 0
     return nodes.add("ShaderNodeBsdfGlossy", inputs={"Color": colour, "Roughness": alpha**0.5}, distribution=kind)
 
 
@@ -123,7 +123,7 @@ def by_cosine(nodes, cosines, values):
 
 def glass(nodes, bsdf):
     alpha = float(bsdf.get("alpha", 0.1)) if bsdf.type.startswith("rough") else 0.0
-    kind = "SHARP" if not alpha else "GGX" if bsdf.get("distribution") == "ggx" else "BECKMANN"
+    kind = "GGX" if not alpha or bsdf.get("distribution") == "ggx" else "BECKMANN"
     return nodes.add("ShaderNodeBsdfGlass", inputs={"Color": [1.0] * 3, "Roughness": alpha**0.5,
                                                     "IOR": ratio(bsdf, 1.5046)}, distribution=kind)
 

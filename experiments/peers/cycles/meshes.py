@@ -1,4 +1,4 @@
-"""Triangles of a shape of the exported scene, as arrays: PLY and OBJ files, rectangles and cubes."""
+"""Triangles of a shape of the exported scene, as arrays: PLY and OBJ files, rectangles, cubes and spheres."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +34,8 @@ def mesh_of(shape, folder):
             mesh.normals = None
     elif shape.type in ("rectangle", "cube"):
         mesh = rectangle() if shape.type == "rectangle" else cube()
+    elif shape.type == "sphere":
+        mesh = sphere(np.array(shape.get("center", [0.0, 0.0, 0.0])), shape.get("radius", 1.0))
     else:
         return None
     return mesh.transformed(shape.transforms.get("to_world", np.eye(4)))
@@ -41,7 +43,7 @@ def mesh_of(shape, folder):
 
 def is_smooth(shape):
     """Mitsuba computes normals of vertices where an OBJ or PLY file has none, unless face_normals are requested."""
-    return shape.type in ("ply", "obj") and not shape.get("face_normals", False)
+    return shape.type in ("ply", "obj", "sphere") and not shape.get("face_normals", False)
 
 
 def rectangle():
@@ -59,6 +61,21 @@ def cube():
     positions = np.concatenate(parts)
     faces = np.concatenate([rectangle().triangles + 4 * i for i in range(6)])
     return Mesh(positions, faces, None, np.tile(rectangle().uvs, (6, 1)))
+
+
+def sphere(center, radius, rings=96):
+    """By longitude and latitude, with the normals of the sphere; its area is that of the sphere, for the power of a lamp."""
+    latitude, longitude = np.meshgrid(np.linspace(0, np.pi, rings + 1), np.linspace(0, 2 * np.pi, 2 * rings + 1), indexing="ij")
+    normals = np.stack([np.sin(latitude) * np.cos(longitude), np.sin(latitude) * np.sin(longitude), np.cos(latitude)], axis=2)
+    normals = normals.reshape(-1, 3)
+    corner = np.arange(rings)[:, None] * (2 * rings + 1) + np.arange(2 * rings)
+    below, right = corner + 2 * rings + 1, corner + 1
+    upper = np.stack([corner, below, right], axis=2)[1:]  # the pole's triangle of no area is left out
+    lower = np.stack([right, below, below + 1], axis=2)[:-1]
+    triangles = np.concatenate([upper.reshape(-1, 3), lower.reshape(-1, 3)])
+    a, b, c = (normals[triangles[:, i]] for i in range(3))
+    area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+    return Mesh(center + radius * np.sqrt(4 * np.pi / area) * normals, triangles, normals)
 
 
 def read_obj(path):

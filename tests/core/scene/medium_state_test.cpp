@@ -292,6 +292,21 @@ TEST_CASE("An area light begins outside of its shape", "[scene][media]") {
     CHECK(sigma(scene->emitter_medium_state(lamp, *sample)) == 1);
 }
 
+// A window of fog, seen from far, fills less than a hundredth of the directions around the camera.
+TEST_CASE("A far open wall says what lies before it and behind it", "[scene][media]") {
+    const auto scene = scene_with_media(
+        "<shape type='rectangle'><transform name='to_world'><translate z='1'/></transform>"
+        "<bsdf type='null'/>" +
+        inside("a") +
+        "</shape><shape type='sphere'><float name='radius' value='.3'/><bsdf type='dielectric'/>" +
+        outside("a") + "</shape>");
+    for (const float z : {7.0f, 20.0f, 300.0f}) {
+        CHECK(sigma_at(*scene, {0, 0, z}) == 0);
+        CHECK(sigma_at(*scene, {0.1f, 0.2f, -z}) == 1);
+    }
+    CHECK(sigma_at(*scene, {0.5f, 0, 0}) == 1);
+}
+
 TEST_CASE("Lights that reach through a boundary are tested point by point", "[scene][media]") {
     const auto scene = scene_with_media(
         box("1", inside("a")) +
