@@ -1,5 +1,5 @@
-"""Writes a scene of bitterli_rainbow as its renderer reads it: every opaque surface has two sides, and the boundary of a
-medium that names no BSDF is passed through. Read as Mitsuba reads them, walls that turn their back are black there.
+"""Writes a scene of bitterli_rainbow as its renderer reads it: every opaque surface has two sides. Read as Mitsuba reads
+them, walls that turn their back are black there.
 
     python benchmark/two_sided.py FROM.xml TO.xml
 """
@@ -22,8 +22,6 @@ def two_sided(source, target):
                 wrapped.append(bsdf)
                 parent[at] = wrapped
     for shape in scene.iter("shape"):
-        if shape.find("medium") is not None and shape.find("bsdf") is None and shape.find("ref") is None:
-            ElementTree.SubElement(shape, "bsdf", {"type": "null"})
         for name in shape.findall("string[@name='filename']"):
             name.set("value", str((Path(source).parent / name.get("value")).resolve()))
     tree.write(target, encoding="utf-8", xml_declaration=True)

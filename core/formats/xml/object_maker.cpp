@@ -6,6 +6,7 @@
 
 #include "core/cameras/sensors.h"
 #include "core/formats/xml/attribute_checks.h"
+#include "core/formats/xml/element_content.h"
 #include "core/formats/xml/scene_values.h"
 #include "core/geometry/curves.h"
 #include "core/geometry/shape.h"
@@ -52,10 +53,20 @@ std::shared_ptr<Object> ObjectMaker::make(const Element& written) {
     if (const auto it = made_.find(element); it != made_.end()) return it->second.object;
     made_[element];  // marks it as being made
     ++depth_;
-    auto object = make_new(*element);
+    auto object = element->tag == "medium" ? make_medium(*element) : make_new(*element);
     --depth_;
     made_[element] = {object, true};
     return object;
+}
+
+/// Media that are written alike are one: a light and a wall that each write out the fog they stand in stand
+/// in the same.
+std::shared_ptr<Object> ObjectMaker::make_medium(const Element& element) {
+    std::string content;
+    if (!faults_.attempt(element, [&] { content = content_of(element, ids_); })) return nullptr;
+    auto& medium = media_by_content_[content];
+    if (!medium) medium = make_new(element);
+    return medium;
 }
 
 std::shared_ptr<Object> ObjectMaker::make_new(const Element& element) {

@@ -42,6 +42,7 @@ class ObjectMaker {
         bool done = false;
     };
     std::shared_ptr<Object> make_new(const Element& element);
+    std::shared_ptr<Object> make_medium(const Element& element);
     bool read_properties(const Element& element, Properties& properties);
     bool read_child(const Element& child, const Element& parent, const Manual& manual,
                     Properties& properties);
@@ -60,6 +61,7 @@ class ObjectMaker {
     Faults& faults_;
     std::map<const Element*, Made> made_;
     std::map<std::string, std::shared_ptr<Bsdf>> defaults_;
+    std::map<std::string, std::shared_ptr<Object>> media_by_content_;
     int depth_ = 0;
     bool too_deep_ = false;  ///< nothing more is made
 };

@@ -75,7 +75,7 @@ in the file it is defined; `name` on the reference says what it is used for, as 
 
 - A **shape** holds a `bsdf`, an `emitter` of type `area`, and media named `interior` and `exterior`. Without a
   BSDF it is diffuse with reflectance 0.5, or black when it emits. Inside several shapes at once, the medium of
-  the one declared last counts.
+  the one declared last counts. Media that are written alike are one medium.
 - A **sensor** holds a `film` (with its `rfilter`), a `sampler`, and the `medium` around it where the shapes
   do not name it.
 - An **emitter** may hold the `medium` around it in the same way.

@@ -292,6 +292,28 @@ TEST_CASE("An area light begins outside of its shape", "[scene][media]") {
     CHECK(sigma(scene->emitter_medium_state(lamp, *sample)) == 1);
 }
 
+// Files of version 0.x often write their fog out at each wall; two objects of it would part light from eye
+// paths.
+TEST_CASE("Media that are written alike are one, whatever their ids and names", "[scene][media]") {
+    const auto fog = [](const std::string& name, const std::string& sigma, const std::string& id = "") {
+        return "<medium type='homogeneous' name='" + name + "'" + id + "><float name='sigma_t' value='" +
+               sigma + "'/></medium>";
+    };
+    const auto scene =
+        load_body(sphere("0", "1", fog("interior", "1")) + sphere("3", "1", fog("exterior", "1")) +
+                  sphere("6", "1", fog("interior", "2")) + sphere("9", "1", fog("interior", "1", " id='x'")));
+    const auto& shapes = scene->shapes();
+    std::vector<const Medium*> media;
+    for (const auto& shape : shapes)
+        if (shape->has_medium_boundary)
+            media.push_back(shape->interior ? shape->interior.get() : shape->exterior.get());
+    REQUIRE(media.size() == 4);
+    CHECK(media[0] == media[1]);
+    CHECK(media[0] != media[2]);
+    CHECK(media[0] == media[3]);
+    CHECK(scene->media().size() == 2);
+}
+
 // A window of fog, seen from far, fills less than a hundredth of the directions around the camera.
 TEST_CASE("A far open wall says what lies before it and behind it", "[scene][media]") {
     const auto scene = scene_with_media(
