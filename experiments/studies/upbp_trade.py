@@ -6,26 +6,24 @@ Every method renders as many passes as a pilot says fit into --seconds of one th
 against two references of mote_bdpt or volpath, made once in --references, each --reference seconds long. Each result is appended to
 --output at once, and what is there is not rendered again. The table at the end has the relative RMSE [%] at --seconds (errors fall as
 the root of the time that a method took), the combination over the best of its techniques alone, and volpath's time to the
-combination's error over that of the combination.
+combination's error over that of the combination. benchmark/generate makes the volumetric caustic.
 """
 import argparse
 import csv
 import json
-import os
 import resource
 import subprocess
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-DATA = Path(os.environ.get("MOTE_TEST_DATA") or ROOT.parent / "shared" / "data")
 FIGURES = ROOT / "experiments/figures/scenes"
 # File, its settings, and the integrator of the references.
 SCENES = {
     "glass in thin fog": (FIGURES / "glass_in_fog.xml", [], "mote_bdpt"),
     "glass in dense fog": (FIGURES / "glass_in_fog.xml", ["sigma_t=2"], "mote_bdpt"),
     "glass of milk": (FIGURES / "glass_of_milk.xml", [], "mote_bdpt"),
-    "volumetric caustic": (DATA / "scenes/bitterli_rainbow/volumetric-caustic/scene.xml", [], "mote_bdpt"),
+    "volumetric caustic": (ROOT / "benchmark/generated/volumetric-caustic.xml", [], "mote_bdpt"),
     "room of dense fog": (ROOT / "experiments/studies/vpls_and_media.xml", ["sigma_t=5", "wall=0.6"], "mote_bdpt"),
     "fog grille": (ROOT / "scenes/fog_grille.xml", [], "volpath"),
     "shade in smoke": (FIGURES / "shade_in_smoke.xml", [], "mote_bdpt"),
