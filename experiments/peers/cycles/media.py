@@ -53,6 +53,7 @@ def grid(medium, boundary, vdb, job, notes):
     volume.filepath = file
     volume.grids.load()
     volume.render.precision, volume.render.clipping = "FULL", 0.0
+    volume.render.space = "WORLD"  # in object space the density grows as the object is scaled down
     made = bpy.data.objects.new("grid", volume)
     made.matrix_world = Matrix(matrix)
     bpy.context.scene.collection.objects.link(made)
