@@ -85,11 +85,11 @@ def glossy(nodes, bsdf, colour):
 
 
 def conductor(nodes, bsdf):
-    """R = R0 + (1 - R0) (1 - cos)^5 with the cosine of the surface, not of the facet; R0 of eta and k."""
-    eta, k = np.array(bsdf.rgb("eta", 0.0)), np.array(bsdf.rgb("k", 1.0))
-    normal = ((eta - 1)**2 + k**2) / ((eta + 1)**2 + k**2) * bsdf.rgb("specular_reflectance")
+    """R = s (R0 + (1 - R0) (1 - cos)^5) with the cosine of the surface, not of the facet; R0 of eta and k, s specular_reflectance."""
+    eta, k, scale = (np.array(bsdf.rgb(name, value)) for name, value in (("eta", 0.0), ("k", 1.0), ("specular_reflectance", 1.0)))
+    normal = ((eta - 1)**2 + k**2) / ((eta + 1)**2 + k**2) * scale
     facing = nodes.add("ShaderNodeLayerWeight", "Facing", inputs={"Blend": 0.5})
-    return glossy(nodes, bsdf, nodes.mix_colours(nodes.math("POWER", facing, 5.0), normal.tolist(), [1.0] * 3))
+    return glossy(nodes, bsdf, nodes.mix_colours(nodes.math("POWER", facing, 5.0), normal.tolist(), scale.tolist()))
 
 
 def plastic(nodes, bsdf):
