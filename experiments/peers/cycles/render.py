@@ -6,7 +6,7 @@ The job: folder (of the exported scene), vdb, output, threads, seed, budget (rea
 volume_sampling (media.py), filter: box or gaussian, denoise: by OpenImageDenoise with prefiltered albedo and normals,
 guiding: on surfaces and in volumes.
 Writes output/N.exr (linear, float) and output/log.json. No view transform, clamping, adaptive sampling, light threshold or
-blur; as many bounces as Cycles has; the light tree; media without bias.
+blur; as many bounces as the scene allows, up to Cycles' most; the light tree; media without bias.
 """
 import json
 import resource
@@ -20,8 +20,15 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "real_sizes")]
 from build import build  # noqa: E402
 from doubling import next_passes  # noqa: E402
+from flat_scene import read_flat_scene  # noqa: E402
 
 BOUNCES = 1024  # the most that Cycles allows
+
+
+def bounces(folder):
+    """Those of the scene's max_depth: a path of depth 2 is light that is reflected once, Cycles' bounce 0."""
+    depth = read_flat_scene(folder / "scene.xml").child("integrator").get("max_depth", -1)
+    return BOUNCES if depth < 0 else min(max(depth - 2, 0), BOUNCES)
 
 
 def configure(job):
@@ -36,6 +43,7 @@ def configure(job):
     for name in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces",
                  "transparent_max_bounces"):
         setattr(cycles, name, BOUNCES)
+    cycles.max_bounces = bounces(Path(job["folder"]))
     cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.blur_glossy = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     cycles.light_sampling_threshold = 0.0
