@@ -49,7 +49,7 @@ def plot(scores, path):
         axes.errorbar(x, y, xerr=spread, fmt="D" if denoised else "o", ms=5, lw=1.2, color=colour(method), label=method)
     for i in range(1, len(scenes)):
         axes.axhline(i, color="#c8c8c8", lw=0.8)
-    axes.set(ylim=(0, len(scenes)), yticks=[i + 0.5 for i in range(len(scenes))])
+    axes.set(ylabel="scene", ylim=(0, len(scenes)), yticks=[i + 0.5 for i in range(len(scenes))])
     axes.set_yticklabels([s.replace("_", " ") for s in scenes])
     axes.set(xscale="log", xlabel=f"{plotting.RMSE} at the largest budget; diamonds: denoised")
     axes.xaxis.set_major_locator(plotting.LogLocator(subs=(1,), numticks=12))
