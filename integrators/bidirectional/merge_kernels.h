@@ -43,6 +43,7 @@ struct MergeSettings {
     std::array<double, merge_count> light_subpaths{1.0, 1.0, 1.0, 1.0};
     /// Probability with which a technique's merges are sought at a vertex or along a beam of the eye.
     std::array<double, merge_count> effort{1.0, 1.0, 1.0, 1.0};
+    bool always_sought = false;  ///< whatever the effort, which is in the weights alone: for trials
     BeamLength light_beams = BeamLength::short_beam, eye_beams = BeamLength::long_beam;
 
     bool uses(Merge technique) const { return radius[std::size_t(technique)] > 0.0; }

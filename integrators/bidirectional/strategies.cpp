@@ -52,9 +52,8 @@ void Strategies<Media>::finish_light_start() {
 
 template <bool Media>
 float Strategies<Media>::worth_a_ray(float weight) {
-    constexpr float worth = 0.25f;
-    if (settings_.all_connections || !(weight < worth)) return 1.0f;
-    const float chance = weight / worth;
+    const float chance = chance_of_ray(weight);
+    if (settings_.all_connections || !(chance < 1.0f)) return 1.0f;
     return context_.rng.next_float() < chance ? chance : 0.0f;
 }
 

@@ -25,8 +25,17 @@ struct Contribution {
     core::Rgb light{0.0f};
     Transport layer{};
     int s = 0, t = 0;
-    float weight = 0.0f;  ///< of multiple importance sampling, in `light`
+    float weight = 0.0f;           ///< of multiple importance sampling, in `light`
+    std::optional<Merge> merge{};  ///< the technique that found it, with s = t = 0; none: a connection
+    std::uint32_t query = 0;       ///< merges of one query of an eye path are sought together
 };
+
+/// The chance with which a ray is spent on what has this weight: below 1 where other techniques find it
+/// better.
+inline float chance_of_ray(float weight) {
+    constexpr float worth = 0.25f;
+    return std::min(1.0f, weight / worth);
+}
 
 /// PathVertex::connection of the first vertex behind the light, `start`, which is vertex 0.
 double light_connection(const LightEnds& ends, const PathVertex& first, const LightPoint& start,
@@ -123,8 +132,7 @@ class Strategies {
     }
     Transport layer_of(std::size_t s, std::size_t t) const { return layer_of(s, eye_.vertices[t - 1]); }
     bool wanted(std::size_t s, std::size_t t) const { return settings_.limits.wanted[layer_of(s, t)]; }
-    /// The chance with which a ray is spent on what other techniques find better, by its weight (without the
-    /// tau of the edge itself); 0: not this time.
+    /// chance_of_ray(), by the weight without the tau of the edge itself; 0: not this time.
     float worth_a_ray(float weight);
     double edge_along(const core::Ray& ray, const core::ScatteringVertex& from,
                       const core::MediumState& state);

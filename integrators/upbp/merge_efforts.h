@@ -3,11 +3,9 @@
 // unbiased, and techniques that find the same paths take over what it leaves.
 //
 // In dense media a query beam passes hundreds of photons and beams, whose light it does not need; then a pass
-// costs five times as much as its paths, for a fifth less noise. No technique may take more than a quarter of
-// the work of the paths.
+// costs five times as much as its paths, for a fifth less noise.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -23,26 +21,18 @@ inline constexpr PerMerge full_efforts{1.0, 1.0, 1.0, 1.0};
 struct MergeWork {
     PerMerge hits{};
     double of_lookups = 0.0;  ///< what lookups of the medium have of it
+    std::uint64_t found = 0;  ///< merges
 
     /// A query that tested so many vertices or pieces of beams, and found so many merges.
-    void add_query(Merge technique, std::size_t tested, std::size_t found, std::uint64_t lookups) {
+    void add_query(Merge technique, std::size_t tested, std::size_t found_here, std::uint64_t lookups) {
         const double looked_up = 0.25 * double(lookups);
-        hits[std::size_t(technique)] += 0.5 + 0.1 * double(tested) + 0.4 * double(found) + looked_up;
-        of_lookups += looked_up;
+        hits[std::size_t(technique)] += 0.5 + 0.1 * double(tested) + 0.4 * double(found_here) + looked_up;
+        of_lookups += looked_up, found += found_here;
     }
     void add(const MergeWork& other) {
         for (std::size_t t = 0; t < merge_count; ++t) hits[t] += other.hits[t];
-        of_lookups += other.of_lookups;
+        of_lookups += other.of_lookups, found += other.found;
     }
 };
-
-/// Efforts for a scene in which merges take this work at full efforts, and paths and connections `paths`.
-inline PerMerge affordable_efforts(const MergeWork& merges, double paths) {
-    constexpr double share = 0.25, least = 1.0 / 256.0;
-    PerMerge efforts = full_efforts;
-    for (std::size_t t = 0; t < merge_count; ++t)
-        if (merges.hits[t] > share * paths) efforts[t] = std::max(least, share * paths / merges.hits[t]);
-    return efforts;
-}
 
 }  // namespace mote::integrators

@@ -59,9 +59,11 @@ class Merges {
     void seek(Merge technique, const F& merges) {
         if (!settings_.merging.uses(technique)) return;
         const double effort = settings_.merging.effort[std::size_t(technique)];
-        if (effort < 1.0 && !(context_.rng.next_float() < float(effort))) return;
+        ++query_;
+        if (effort < 1.0 && !settings_.merging.always_sought && !(context_.rng.next_float() < float(effort)))
+            return;
         const std::uint64_t lookups = context_.tracking.lookups;
-        tested_ = found_ = 0;
+        tested_ = found_ = 0, technique_ = technique;
         merges();
         work_.add_query(technique, tested_, found_, context_.tracking.lookups - lookups);
     }
@@ -170,6 +172,7 @@ class Merges {
         Contribution c;
         c.light = y.weight * z.weight * f * factor * float(over);
         c.layer = Strategies<Media>::layer_of(i, z), c.weight = float(over * kernel);
+        c.merge = technique_, c.query = query_;
         found(c);
     }
 
@@ -218,6 +221,8 @@ class Merges {
     std::vector<core::RayFacingDiscs::Hit> near_beam_;
     std::vector<LightBeams::Hit> crossings_;
     PathVertex on_eye_, on_light_;        ///< of beams; reused
+    Merge technique_{};                   ///< of this query
+    std::uint32_t query_ = 0;             ///< queries so far
     std::size_t tested_ = 0, found_ = 0;  ///< by this query
     MergeWork work_;
 };

@@ -61,9 +61,9 @@ Plan MoteUpbp::plan(const Scene& scene, const Requirements& r) const {
     plan.run("kernels", "radii shrink from pass to pass",
              settings_.alpha < 1.0 ? "bias and noise of the mean both go to zero with the number of passes"
                                    : "alpha is 1: they do not shrink, and the bias stays");
-    if (settings_.efforts == Efforts::automatic && settings_.radius > 0.0)
-        plan.run("efforts", "merges are sought as often as they are affordable",
-                 "no technique takes more than a quarter of the work of the paths, by a trial pass");
+    if (settings_.efforts_by_trial())
+        plan.run("efforts", "each technique's merges are sought as often as pays",
+                 "the least variance times work, by a trial");
     plan_media(plan, r);
     if (r.lights_media > 0)
         plan.run("emission of media", "met by eye paths alone", "no light path starts in a medium");
@@ -101,9 +101,8 @@ void register_mote_upbp(Registry& registry) {
          row("heuristic", &S::heuristic, {{"power", Heuristic::power}, {"balance", Heuristic::balance}},
              "Weights of the techniques that find the same path."),
          row("efforts", &S::efforts, {{"automatic", Efforts::automatic}, {"equal", Efforts::equal}},
-             "How often merges are sought: automatic: each technique so often that it takes no more than a "
-             "quarter of "
-             "the work of the paths, by a trial pass; equal: always."),
+             "How often merges are sought: automatic: each technique so often that variance times work is "
+             "least, by a trial; equal, or without the balance heuristic: always."),
          row("all_connections", &S::all_connections,
              "Test every connection of an eye vertex with the light path; false: one, sampled by its "
              "unoccluded contribution.")},

@@ -14,9 +14,9 @@ class UpbpEstimator final : public Estimator {
     UpbpEstimator(const Scene& scene, const RenderOptions& options, const UpbpSettings& settings)
         : passes_(scene, options, settings, {options.width, options.height}),
           loop_(scene, options, {.by_rows = true}) {
-        if (settings.efforts == Efforts::equal || settings.radius == 0.0) return;
+        if (!settings.efforts_by_trial()) return;
         const Stopwatch stopwatch(trial_seconds_);
-        efforts_ = efforts_by_trial<Media>(scene, options, settings);
+        efforts_ = efficient_efforts(trial_of_efforts<Media>(scene, options, settings));
     }
 
     bool pass(const PassContext& context, PassImage& image) override {

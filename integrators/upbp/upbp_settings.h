@@ -8,7 +8,7 @@ namespace mote::integrators {
 
 /// Probabilities with which merges are sought (merge_efforts.h).
 enum class Efforts : std::uint8_t {
-    automatic,  ///< by a trial pass
+    automatic,  ///< by a trial
     equal       ///< all are 1
 };
 
@@ -21,6 +21,11 @@ struct UpbpSettings {
     double alpha = 2.0 / 3.0;  ///< how fast kernels shrink
     bool all_connections = false;
     Efforts efforts = Efforts::automatic;
+
+    /// Only the balance heuristic weighs by densities, and efforts are factors of these.
+    bool efforts_by_trial() const {
+        return efforts == Efforts::automatic && radius > 0.0 && heuristic == Heuristic::balance;
+    }
 };
 
 /// Long where short beams are not possible in the scene (beam.h).

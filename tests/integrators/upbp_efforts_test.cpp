@@ -1,7 +1,8 @@
-// Efforts of mote_upbp: in closed form, and whatever they are, the mean is the same.
+// Efforts of mote_upbp: what a trial foretells of them is so, and whatever they are, the mean is the same.
 #include <cmath>
+#include <numeric>
 
-#include "core/render/pass_runner.h"
+#include "core/render/render_driver.h"
 #include "integrators/upbp/effort_trials.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
@@ -9,6 +10,7 @@
 using namespace mote;
 using namespace mote::core;
 using namespace mote::tests;
+using integrators::Merge;
 using integrators::PerMerge;
 
 namespace {
@@ -21,31 +23,45 @@ struct Mean {
     double variance() const { return (squares / n - value() * value()) / (n - 1); }
 };
 
-constexpr int edge = 8, passes = 600;
-
-/// Light of eye paths in all pixels, over passes.
-Mean light(const Scene& scene, const integrators::UpbpSettings& settings, const PerMerge& efforts,
-           std::uint64_t seed) {
-    const RenderOptions options{.seed = seed, .width = edge, .height = edge};
-    integrators::UpbpPasses<true> of_scene(scene, options, settings, {edge, edge});
-    const auto filter = film_filter(scene);
+/// Light in `pixels` pixels of one row, a pass after the other: visit(std::vector<double>).
+template <typename Visit>
+void for_each_pass(const Scene& scene, const integrators::UpbpSettings& settings, const PerMerge& efforts,
+                   std::uint64_t seed, int count, int pixels, const Visit& visit) {
+    const RenderOptions options{.seed = seed, .width = pixels, .height = 1};
+    integrators::UpbpPasses<true> of_scene(scene, options, settings, {pixels, 1});
+    const auto filter = make_pixel_filter("box", 0.5f, 0.5f);
     const std::atomic<bool> never{false};
-    Mean mean;
-    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+    for (std::uint32_t pass = 0; pass < std::uint32_t(count); ++pass) {
         const PassContext context{pass, *filter, never};
-        const auto of_pass = of_scene.settings_of(0, efforts);
+        const auto of_pass = of_scene.settings_of(integrators::trial_pass, efforts);
         integrators::UpbpLights lights;
         REQUIRE(of_scene.trace_light_paths(context, of_pass, lights));
+        std::vector<double> light((std::size_t(pixels)));
+        for (const auto& row : lights.splats)
+            for (const integrators::Splat& splat : row)
+                if (const int x = int(splat.film.x); x >= 0 && x < pixels)
+                    light[std::size_t(x)] += double(average(splat.light));
         WalkContext walk;
-        double sum = 0.0;
         of_scene.trace_eye_paths(
             context, of_pass, lights, walk,
-            [](const auto& visit) {
-                for (int i = 0; i < edge * edge; ++i) visit(i % edge, i / edge);
+            [&](const auto& at) {
+                for (int x = 0; x < pixels; ++x) at(x, 0);
             },
-            [&](int, int, const integrators::Contribution& c) { sum += double(average(c.light)); });
-        mean.add(sum);
+            [&](int x, int, const integrators::Contribution& c) {
+                light[std::size_t(x)] += double(average(c.light));
+            });
+        visit(light);
     }
+}
+
+constexpr int edge = 32, passes = 1200;
+
+Mean light(const Scene& scene, const integrators::UpbpSettings& settings, const PerMerge& efforts,
+           std::uint64_t seed) {
+    Mean mean;
+    for_each_pass(scene, settings, efforts, seed, passes, edge, [&](const std::vector<double>& pixels) {
+        mean.add(std::accumulate(pixels.begin(), pixels.end(), 0.0));
+    });
     return mean;
 }
 
@@ -55,13 +71,71 @@ double z(const Mean& a, const Mean& b) {
 
 }  // namespace
 
-TEST_CASE("A technique takes at most a quarter of the work of the paths", "[upbp]") {
-    integrators::MergeWork work;
-    work.hits = {10.0, 0.0, 100.0, 400.0};
-    CHECK(integrators::affordable_efforts(work, 400.0) == PerMerge{1.0, 1.0, 1.0, 0.25});
-    work.hits = {200.0, 100.0, 50.0, 1e9};
-    CHECK(integrators::affordable_efforts(work, 400.0) == PerMerge{0.5, 1.0, 1.0, 1.0 / 256.0});
-    CHECK(integrators::affordable_efforts({}, 0.0) == integrators::full_efforts);
+TEST_CASE("A trial's samples give the variance at any efforts", "[upbp]") {
+    integrators::Trial trial;
+    // A query of two merges, and a connection with a ray of its own, in pass A; nothing in B.
+    integrators::TrialPixel pixel;
+    PerMerge all{}, half{};
+    all[3] = 1.0, half[3] = 0.5;
+    pixel[0] = {{.light = 1.0f, .share = all, .merge = Merge::beam_beam_1d, .query = 1},
+                {.light = 3.0f, .share = half, .merge = Merge::beam_beam_1d, .query = 1},
+                {.light = 2.0f, .share = half}};
+    trial.rows = {{pixel}};
+    CHECK(integrators::variance_at(trial, integrators::full_efforts) == Approx(0.5 * 36.0));
+    // At 1/4: 1 / (1/4) and 3 / (5/8) with probability 1/4; 2 / (5/8) always.
+    const double query = 4.0 + 4.8, mean = 0.25 * query + 3.2;
+    CHECK(integrators::variance_at(trial, {1.0, 1.0, 1.0, 0.25}) ==
+          Approx(0.5 * (mean * mean + 0.25 * 0.75 * query * query)));
+    trial.rows.clear();
+    trial.splats = {{.light = 2.0f, .share = half}};
+    CHECK(integrators::variance_at(trial, {1.0, 1.0, 1.0, 0.25}) == Approx(0.5 * 3.2 * 3.2));
+}
+
+TEST_CASE("What merges do not bring is not sought", "[upbp]") {
+    integrators::Trial trial;
+    trial.work_of_paths = 1.0, trial.work_of_merges = {1.0, 1.0, 0.0, 1.0};
+    integrators::TrialPixel pixel;
+    PerMerge surface{}, beams{};
+    surface[0] = 0.999, beams[3] = 0.5;
+    pixel[0] = {{.light = 1.0f, .share = surface, .merge = Merge::surface}, {.light = 1e-6f, .share = beams}};
+    trial.rows = {{pixel}};
+    CHECK(integrators::efficient_efforts(trial) == PerMerge{1.0, 1.0 / 256.0, 1.0, 1.0 / 256.0});
+    CHECK(integrators::efficient_efforts({}) == integrators::full_efforts);
+}
+
+TEST_CASE("A trial foretells the variance of a pass", "[upbp][statistics]") {
+    const auto scene = scene_from(box(grey, fog("0.6, 0.9, 1.2", "")), edge);
+    integrators::UpbpSettings settings;
+    settings.radius = 0.15, settings.limits.max_depth = 4, settings.all_connections = true;
+    for (const PerMerge& efforts : {integrators::full_efforts, PerMerge{0.25, 0.0625, 0.25, 0.0625}}) {
+        Mean foretold, planted;
+        for (std::uint64_t seed = 0; seed < 60; ++seed) {
+            const RenderOptions options{.seed = seed, .width = edge, .height = 1};
+            integrators::Trial trial = integrators::trial_of_efforts<true>(*scene, options, settings);
+            foretold.add(integrators::variance_at(trial, efforts));
+            for (auto& row : trial.rows)  // shares forgotten
+                for (auto& pixel : row)
+                    for (auto& samples : pixel)
+                        for (auto& sample : samples) sample.share = {};
+            planted.add(integrators::variance_at(trial, efforts));
+        }
+        // Of blocks of two passes, by their difference.
+        Mean measured;
+        std::vector<double> before;
+        for_each_pass(*scene, settings, efforts, 7, passes, edge, [&](const std::vector<double>& pixels) {
+            if (before.empty()) {
+                before = pixels;
+                return;
+            }
+            double sum = 0.0;
+            for (std::size_t x = 0; x < pixels.size(); ++x)
+                sum += 0.5 * (pixels[x] - before[x]) * (pixels[x] - before[x]);
+            measured.add(sum), before.clear();
+        });
+        INFO(foretold.value() << " and " << measured.value() << ", z " << z(foretold, measured));
+        CHECK(std::fabs(z(foretold, measured)) < 3.5);
+        if (efforts != integrators::full_efforts) CHECK(std::fabs(z(planted, measured)) > 3.5);
+    }
 }
 
 TEST_CASE("Efforts of merges change no mean", "[upbp][statistics]") {
@@ -92,8 +166,7 @@ TEST_CASE("Crowded kernels are sought less often", "[upbp]") {
     const RenderOptions options{.seed = 1, .width = 32, .height = 32};
     integrators::UpbpSettings settings;
     settings.radius = 0.5;
-    const PerMerge efforts = integrators::efforts_by_trial<true>(*scene, options, settings);
-    for (const double effort : efforts) CHECK((effort >= 1.0 / 256.0 && effort < 0.5));
-    settings.radius = 1e-4;
-    CHECK(integrators::efforts_by_trial<true>(*scene, options, settings)[2] == 1.0);
+    const PerMerge efforts =
+        integrators::efficient_efforts(integrators::trial_of_efforts<true>(*scene, options, settings));
+    for (const double effort : efforts) CHECK(effort <= 0.25);
 }
