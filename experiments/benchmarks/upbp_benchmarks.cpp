@@ -37,7 +37,7 @@ class LightPaths {
             }
         });
     }
-    LightVertices vertices() const { return {subpaths_, settings_.merging}; }
+    LightVertices vertices() const { return {subpaths_, settings_.merging, Rng(1)}; }
     /// Positions of the vertices that merge.
     std::vector<Vec3> positions() const {
         std::vector<Vec3> positions;

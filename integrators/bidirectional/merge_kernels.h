@@ -12,7 +12,7 @@
 //   photon, query beam 2D (a sigma_t) (b / tau') n pi r^2 / sigma_t         K = n pi r^2 / tau'
 //   beam, beam 1D         (a / tau') (b / tau') n 2 r sin / sigma_t         K = n 2 r sin / (sigma_t tau'
 //   tau')
-// Where merges are sought with probability q (`effort`), q n replaces n. A point on a beam costs no density
+// Where merges are found with probability q (`effort`), q n replaces n. A point on a beam costs no density
 // of its distance. tau' = tau of that edge for long beams, which reach the next surface; 1 for short ones,
 // which are as long as the sampled distance: the point is then reached with probability tau.
 #pragma once
@@ -41,11 +41,16 @@ struct MergeSettings {
     std::array<double, merge_count> radius{};  ///< [m]; 0: the technique is not used
     /// n of a pass; each may merge with every eye subpath.
     std::array<double, merge_count> light_subpaths{1.0, 1.0, 1.0, 1.0};
-    /// Probability with which a technique's merges are sought at a vertex or along a beam of the eye.
+    /// Probability with which a technique finds a merge that is there.
     std::array<double, merge_count> effort{1.0, 1.0, 1.0, 1.0};
     bool always_sought = false;  ///< whatever the effort, which is in the weights alone: for trials
     BeamLength light_beams = BeamLength::short_beam, eye_beams = BeamLength::long_beam;
 
+    /// Half of the effort, as a factor: the probability with which a light vertex or beam may merge, and that
+    /// with which merges are sought at a vertex or along a beam of the eye.
+    double chance(Merge technique) const {
+        return always_sought ? 1.0 : std::sqrt(effort[std::size_t(technique)]);
+    }
     bool uses(Merge technique) const { return radius[std::size_t(technique)] > 0.0; }
     bool any() const {
         return std::any_of(radius.begin(), radius.end(), [](double r) { return r > 0.0; });

@@ -12,11 +12,7 @@ namespace {
 struct Moments {
     double mean = 0.0, variance = 0.0;
 
-    /// Light that is there with this probability.
-    void add(double light, double probability) {
-        mean += probability * light;
-        variance += probability * (1.0 - probability) * light * light;
-    }
+    void add(double light, double its_variance) { mean += light, variance += its_variance; }
 };
 
 /// Density of the sample's path at these efforts, over that at full ones.
@@ -29,7 +25,8 @@ double density_left(const TrialSample& sample, const PerMerge& efforts) {
 void add_connection(const TrialSample& sample, const PerMerge& efforts, Moments& moments) {
     const double left = density_left(sample, efforts);
     const double chance = sample.needs_ray ? double(chance_of_ray(float(sample.weight / left))) : 1.0;
-    if (chance > 0.0) moments.add(sample.light / (left * chance), chance);
+    const double light = sample.light / left;
+    if (chance > 0.0) moments.add(light, light * light * (1.0 / chance - 1.0));
 }
 
 Moments moments_of(const std::vector<TrialSample>& samples, const PerMerge& efforts) {
@@ -40,18 +37,16 @@ Moments moments_of(const std::vector<TrialSample>& samples, const PerMerge& effo
             add_connection(first, efforts, moments), ++i;
             continue;
         }
-        double light = 0.0;
-        for (; i < samples.size() && samples[i].merge && samples[i].query == first.query; ++i)
-            light += samples[i].light / density_left(samples[i], efforts);
-        moments.add(light, efforts[std::size_t(*first.merge)]);
+        double light = 0.0, squares = 0.0;
+        for (; i < samples.size() && samples[i].merge && samples[i].query == first.query; ++i) {
+            const double c = samples[i].light / density_left(samples[i], efforts);
+            light += c, squares += c * c;
+        }
+        const double effort = efforts[std::size_t(*first.merge)], q = std::sqrt(effort);
+        moments.add(effort * light,
+                    effort * (q * light * light + (1.0 - q) * squares - effort * light * light));
     }
     return moments;
-}
-
-double work_at(const Trial& trial, const PerMerge& efforts) {
-    double work = trial.work_of_paths;
-    for (std::size_t t = 0; t < merge_count; ++t) work += efforts[t] * trial.work_of_merges[t];
-    return work;
 }
 
 }  // namespace
@@ -79,13 +74,15 @@ double variance_at(const Trial& trial, const PerMerge& efforts) {
 PerMerge efficient_efforts(const Trial& trial) {
     constexpr std::array<double, 5> levels{1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0, 1.0 / 256.0};
     PerMerge efforts = full_efforts;
-    const auto cost = [&](const PerMerge& e) { return variance_at(trial, e) * work_at(trial, e); };
+    const auto cost = [&](const PerMerge& e) {
+        return variance_at(trial, e) * (trial.work_of_paths + trial.work_of_merges.at(e));
+    };
     double least = cost(efforts);
     for (bool changed = true; changed;) {
         changed = false;
         for (std::size_t t = 0; t < merge_count; ++t)
             for (const double level : levels) {
-                if (!(trial.work_of_merges[t] > 0.0)) continue;
+                if (!(trial.work_of_merges.queries[t] > 0.0)) continue;
                 PerMerge other = efforts;
                 other[t] = level;
                 const double its = cost(other);

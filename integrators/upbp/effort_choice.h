@@ -4,10 +4,12 @@
 // By the balance heuristic light that any technique finds is f / sum_j n_j p_j. Efforts e_j change the sum to
 // that of e_j n_j p_j, so with the shares s_j = n_j p_j / sum at full efforts
 //   light at e = light / sum_j e_j s_j.                                                              (1)
-// Samples of one trial at full efforts hence give the variance at any other. A query whose merges bring S is
-// sought with probability e_t, independently of the rest of the pixel: its mean is e_t S and its variance
-// e_t (1 - e_t) S^2. Two passes A and B, which have no path in common, make the variance of a pixel
-//   (A - B)^2 / 2 + (that of A's queries + that of B's) / 2.                                         (2)
+// Samples of one trial at full efforts hence give the variance at any other. A query whose merges bring c_k
+// is sought with the chance q = sqrt(e_t), in which each is found with the chance q again, independently of
+// the rest of the pixel: the mean is q^2 S with S = sum c_k, and the variance
+//   q (q^2 S^2 + q (1 - q) sum c_k^2) - q^4 S^2.                                                     (2)
+// Two passes A and B, which have no path in common, make the variance of a pixel
+//   (A - B)^2 / 2 + (that of A's queries + that of B's) / 2.                                         (3)
 #pragma once
 
 #include <optional>
@@ -36,10 +38,10 @@ struct Trial {
     std::vector<TrialSample> splats;  ///< connections to the lens, of both passes
     double share_of_splats = 1.0;     ///< of the film's light that rows are
     double work_of_paths = 0.0;       ///< of these pixels, with that of connections
-    PerMerge work_of_merges{};        ///< at full efforts, in the same units
+    MergeWork work_of_merges;         ///< at full efforts, in the same units
 };
 
-/// Sum of the variances of the trial's pixels at these efforts, by Eq. (2).
+/// Sum of the variances of the trial's pixels at these efforts, by Eq. (3).
 double variance_at(const Trial& trial, const PerMerge& efforts);
 
 /// Efforts of powers of 1/4 with the least variance times work; 1 where a technique is not used.

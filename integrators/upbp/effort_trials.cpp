@@ -17,7 +17,7 @@ constexpr std::uint32_t trial_stream = 0x6566666fu;  // keeps these paths apart 
 // With fewer than merge_schedule.h has for the first radius, queries would find less than those of a pass.
 constexpr std::size_t max_paths = 16384;
 constexpr int row_step = 8;         // of rows that have eye paths
-constexpr double max_merges = 5e5;  // of a pass, which are kept
+constexpr double max_merges = 1e5;  // of a pass, which are kept
 
 PixelLattice lattice_of(const RenderOptions& options) {
     PixelLattice lattice{options.width, options.height};
@@ -54,7 +54,7 @@ class EffortTrial {
             const std::size_t first_splat = trial_.splats.size();
             replay(pass, std::nullopt, first_splat);
             for (std::size_t t = 0; t < merge_count; ++t)
-                if (trial_.work_of_merges[t] > 0.0) replay(pass, Merge(t), first_splat);
+                if (trial_.work_of_merges.queries[t] > 0.0) replay(pass, Merge(t), first_splat);
         }
         return std::move(trial_);
     }
@@ -99,7 +99,7 @@ class EffortTrial {
         const MergeWork merges =
             trace_eye_paths(context, at_full, lights, eye, [](int, int, const Contribution&) {});
         trial_.work_of_paths = work_of<Media>(eye) - merges.of_lookups + of_light;
-        trial_.work_of_merges = merges.hits;
+        trial_.work_of_merges = merges;
         // Ratios of work are those of fewer rows too.
         const double most = double(merges.found) / max_merges;
         if (most > 1.0) take_every_row(int(std::min(1e6, std::ceil(row_step * most))));

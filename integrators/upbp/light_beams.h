@@ -37,9 +37,9 @@ class LightBeams {
     };
     LightBeams() = default;
     /// Keeps references. `radius` of the kernel [m], above 0. `size` of the scene [m]: boxes are
-    /// a 24th of it long, or longer.
+    /// a 24th of it long, or longer. Beams are left out by `rng` and MergeSettings::chance().
     LightBeams(const std::vector<Subpath>& paths, const std::vector<std::vector<LightBeam>>& rows,
-               BeamLength length, double radius, double size);
+               const MergeSettings& merging, double size, core::Rng rng);
 
     /// All beams that the ray passes nearer than the radius, by t; equal ones by index. Clears `hits` first.
     /// Returns how many pieces were tested.

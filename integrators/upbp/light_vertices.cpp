@@ -4,19 +4,29 @@ namespace mote::integrators {
 
 using namespace core;
 
-LightVertices::LightVertices(const std::vector<Subpath>& paths, const MergeSettings& merging)
+LightVertices::LightVertices(const std::vector<Subpath>& paths, const MergeSettings& merging, Rng rng)
     : paths_(&paths) {
-    std::vector<LightVertex> surface;
+    std::vector<LightVertex> on_surfaces, in_media;
+    const auto keep = [&](Merge technique, const LightVertex& v, std::vector<LightVertex>& kept) {
+        if (!merging.uses(technique)) return;
+        const double chance = merging.chance(technique);
+        if (!(chance < 1.0) || rng.next_float() < float(chance)) kept.push_back(v);
+    };
     for (std::size_t p = 0; p < paths.size(); ++p)
         for (std::size_t i = 1; i < paths[p].size(); ++i) {
-            const PathVertex& v = paths[p].vertices[i];
-            if (!v.scattering.connectable() || is_black(v.weight)) continue;
-            (v.scattering.on_surface() ? surface : in_discs_).push_back({std::uint32_t(p), std::uint32_t(i)});
+            const PathVertex& vertex = paths[p].vertices[i];
+            if (!vertex.scattering.connectable() || is_black(vertex.weight)) continue;
+            const LightVertex v{std::uint32_t(p), std::uint32_t(i)};
+            if (vertex.scattering.on_surface()) {
+                ++on_surfaces_;
+                keep(Merge::surface, v, on_surfaces);
+            } else {
+                ++in_media_;
+                keep(Merge::point_point_3d, v, in_media);
+                keep(Merge::point_beam_2d, v, in_discs_);
+            }
         }
-    on_surfaces_ = surface.size();
-    if (merging.uses(Merge::surface)) surface_ = make_points(surface);
-    if (merging.uses(Merge::point_point_3d)) volume_ = make_points(in_discs_);
-    if (!merging.uses(Merge::point_beam_2d)) return;
+    surface_ = make_points(on_surfaces), volume_ = make_points(in_media);
     const auto radius = float(merging.radius[std::size_t(Merge::point_beam_2d)]);
     std::vector<RayFacingDiscs::Disc> discs;
     discs.reserve(in_discs_.size());

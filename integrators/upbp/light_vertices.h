@@ -18,8 +18,9 @@ struct LightVertex {
 class LightVertices {
   public:
     LightVertices() = default;
-    /// Keeps a reference to the paths. Techniques without a radius get no structure.
-    LightVertices(const std::vector<Subpath>& paths, const MergeSettings& merging);
+    /// Keeps a reference to the paths. Techniques without a radius get no structure, and others those that
+    /// MergeSettings::chance() leaves, by `rng`.
+    LightVertices(const std::vector<Subpath>& paths, const MergeSettings& merging, core::Rng rng);
 
     /// Calls visit(LightVertex) for the vertices on surfaces, or in media, within `radius` [m] of p, in an
     /// order that depends on their positions alone.
@@ -41,8 +42,8 @@ class LightVertices {
 
     const PathVertex& vertex(const LightVertex& v) const { return (*paths_)[v.path].vertices[v.index]; }
     const Subpath& path(const LightVertex& v) const { return (*paths_)[v.path]; }
-    std::size_t on_surfaces() const { return on_surfaces_; }   ///< how many
-    std::size_t in_media() const { return in_discs_.size(); }  ///< how many
+    std::size_t on_surfaces() const { return on_surfaces_; }  ///< how many may merge there, for all chances
+    std::size_t in_media() const { return in_media_; }        ///< how many
 
     /// Upper bound of what a vertex takes in all structures [B].
     static constexpr double bytes_per_vertex =
@@ -60,7 +61,7 @@ class LightVertices {
     Points surface_, volume_;
     core::RayFacingDiscs discs_;
     std::vector<LightVertex> in_discs_;
-    std::size_t on_surfaces_ = 0;
+    std::size_t on_surfaces_ = 0, in_media_ = 0;
 };
 
 }  // namespace mote::integrators

@@ -54,14 +54,13 @@ class Merges {
     const MergeWork& work() const { return work_; }  ///< so far
 
   private:
-    /// Calls merges() with the probability that is the technique's effort, and counts what that takes.
+    /// Calls merges() with the technique's chance, and counts what that takes.
     template <typename F>
     void seek(Merge technique, const F& merges) {
         if (!settings_.merging.uses(technique)) return;
-        const double effort = settings_.merging.effort[std::size_t(technique)];
+        const double chance = settings_.merging.chance(technique);
         ++query_;
-        if (effort < 1.0 && !settings_.merging.always_sought && !(context_.rng.next_float() < float(effort)))
-            return;
+        if (chance < 1.0 && !(context_.rng.next_float() < float(chance))) return;
         const std::uint64_t lookups = context_.tracking.lookups;
         tested_ = found_ = 0, technique_ = technique;
         merges();

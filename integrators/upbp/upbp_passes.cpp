@@ -14,7 +14,7 @@ using namespace core;
 
 namespace {
 
-constexpr std::uint32_t light_path_stream = 0x75706270u;
+constexpr std::uint32_t light_path_stream = 0x75706270u, thinning_stream = 0x7468696eu;
 
 }  // namespace
 
@@ -53,11 +53,13 @@ bool UpbpPasses<Media>::trace_light_paths(const PassContext& context, const Bidi
     lights.paths.resize(lattice_.size());
     rows(1, lattice_.rows());
     if (context.cancelled) return false;
-    lights.vertices = LightVertices(lights.paths, settings.merging);
+    const auto rng = [&](std::uint32_t stream) {
+        return Rng(hash_keys(options_.seed, context.index, thinning_stream, stream));
+    };
+    lights.vertices = LightVertices(lights.paths, settings.merging, rng(0));
     if (settings.merging.uses(Merge::beam_beam_1d))
-        lights.beams = LightBeams(lights.paths, lights.beams_of_row, settings.merging.light_beams,
-                                  settings.merging.radius[std::size_t(Merge::beam_beam_1d)],
-                                  double(scene_.bounds().radius()));
+        lights.beams = LightBeams(lights.paths, lights.beams_of_row, settings.merging,
+                                  double(scene_.bounds().radius()), rng(1));
     return true;
 }
 

@@ -24,7 +24,8 @@ struct UpbpSettings {
 
     /// Only the balance heuristic weighs by densities, and efforts are factors of these.
     bool efforts_by_trial() const {
-        return efforts == Efforts::automatic && radius > 0.0 && heuristic == Heuristic::balance;
+        const bool merges = radius > 0.0 && (surface || point_point || point_beam || beam_beam);
+        return efforts == Efforts::automatic && merges && heuristic == Heuristic::balance;
     }
 };
 

@@ -62,8 +62,8 @@ class KernelSlices {
             if (technique == Merge::point_point_3d) nodes.fill_ball(at, radius);
             if (technique == Merge::point_beam_2d) nodes.fill_disc(at, radius);
             if (technique == Merge::beam_beam_1d) nodes.fill_fan(at, radius);
-            const LightVertices vertices(nodes.paths, settings.merging);
-            const LightBeams beams(nodes.paths, nodes.beams, settings.merging.light_beams, radius, 3.0);
+            const LightVertices vertices(nodes.paths, settings.merging, Rng(1));
+            const LightBeams beams(nodes.paths, nodes.beams, settings.merging, 3.0, Rng(1));
             Merges<true> merges(*scene_, ends_, strategies, vertices, beams, settings, context);
             Vec3d sum(0.0);
             merges.after_step(walk, continues, [&](const Contribution& c) { sum += Vec3d(c.light); });

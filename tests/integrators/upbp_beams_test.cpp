@@ -67,7 +67,9 @@ TEST_CASE("a query beam crosses the light beams that all pairs say", "[upbp][bea
     for (const BeamLength length : {BeamLength::short_beam, BeamLength::long_beam})
         for (const double radius : {0.01, 0.2, 50.0}) {
             const auto rows = random_beams(100, fog, rng);
-            const LightBeams beams(paths, rows, length, radius, 2.0);
+            MergeSettings merging;
+            merging.radius[std::size_t(Merge::beam_beam_1d)] = radius, merging.light_beams = length;
+            const LightBeams beams(paths, rows, merging, 2.0, Rng(1));
             REQUIRE(beams.size() == 100);
             for (int i = 0; i < 50; ++i) {
                 const Ray query{Vec3(in_cube(rng)), Vec3(unit_vector(rng)), 0.0f, 2.0f};
