@@ -67,12 +67,12 @@ double variance_at(const Trial& trial, const PerMerge& efforts) {
         const double light = splat.light / density_left(splat, efforts);
         sum += 0.5 * trial.share_of_splats * light * light;
     }
-    return sum;
+    return sum / trial.pairs;
 }
 
 /// One technique after the other, until none changes.
 PerMerge efficient_efforts(const Trial& trial) {
-    constexpr std::array<double, 5> levels{1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0, 1.0 / 256.0};
+    constexpr std::array<double, 4> levels{1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0};
     PerMerge efforts = full_efforts;
     const auto cost = [&](const PerMerge& e) {
         return variance_at(trial, e) * (trial.work_of_paths + trial.work_of_merges.at(e));

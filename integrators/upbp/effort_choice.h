@@ -35,7 +35,8 @@ using TrialPixel = std::array<std::vector<TrialSample>, 2>;
 /// What a trial measured. Pixels are in rows, which are summed side by side and then in order.
 struct Trial {
     std::vector<std::vector<TrialPixel>> rows;
-    std::vector<TrialSample> splats;  ///< connections to the lens, of both passes
+    std::vector<TrialSample> splats;  ///< connections to the lens, of all passes
+    int pairs = 1;                    ///< of passes; each has its rows
     double share_of_splats = 1.0;     ///< of the film's light that rows are
     double work_of_paths = 0.0;       ///< of these pixels, with that of connections
     MergeWork work_of_merges;         ///< at full efforts, in the same units

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/render/counted_work.h"
@@ -14,10 +15,11 @@ using namespace core;
 namespace {
 
 constexpr std::uint32_t trial_stream = 0x6566666fu;  // keeps these paths apart from those of the picture
-// With fewer than merge_schedule.h has for the first radius, queries would find less than those of a pass.
-constexpr std::size_t max_paths = 16384;
-constexpr int row_step = 8;         // of rows that have eye paths
-constexpr double max_merges = 1e5;  // of a pass, which are kept
+// A few fewer than merge_schedule.h has for the first radius: queries find almost what those of a pass do.
+constexpr std::size_t max_paths = 8192;
+constexpr int eye_paths = 2048;     // of half a trial; all merge with all light paths of a pass
+constexpr int max_pairs = 64;       // of passes, where an image has fewer pixels than that
+constexpr double max_merges = 1e5;  // of half a trial, which are kept
 
 PixelLattice lattice_of(const RenderOptions& options) {
     PixelLattice lattice{options.width, options.height};
@@ -48,9 +50,10 @@ class EffortTrial {
 
     Trial measure() {
         count_work();
-        trial_.rows.resize(std::size_t(rows_));
+        trial_.pairs = pairs_;
+        trial_.rows.resize(std::size_t(rows_ * pairs_));
         for (auto& row : trial_.rows) row.resize(std::size_t(lattice_.columns()));
-        for (std::uint32_t pass = 0; pass < 2; ++pass) {
+        for (int pass = 0; pass < 2 * pairs_; ++pass) {
             const std::size_t first_splat = trial_.splats.size();
             replay(pass, std::nullopt, first_splat);
             for (std::size_t t = 0; t < merge_count; ++t)
@@ -89,7 +92,9 @@ class EffortTrial {
 
     /// Of a pass as the picture has them. All work is per row that the replays have.
     void count_work() {
-        take_every_row(row_step);
+        const int step = std::clamp(int(lattice_.size()) / eye_paths, 1, lattice_.rows());
+        take_every_row(step);
+        pairs_ = std::clamp(eye_paths / (rows_ * lattice_.columns()), 1, max_pairs);
         const PassContext context{0, *filter_, never_};
         UpbpLights lights;
         const BidirectionalSettings at_full = settings_at(full_efforts);
@@ -101,15 +106,15 @@ class EffortTrial {
         trial_.work_of_paths = work_of<Media>(eye) - merges.of_lookups + of_light;
         trial_.work_of_merges = merges;
         // Ratios of work are those of fewer rows too.
-        const double most = double(merges.found) / max_merges;
-        if (most > 1.0) take_every_row(int(std::min(1e6, std::ceil(row_step * most))));
+        const double most = double(merges.found) * pairs_ / max_merges;
+        if (most > 1.0) take_every_row(int(std::min(1e6, std::ceil(step * most))));
         trial_.share_of_splats = share_of_rows();
     }
 
     /// The same paths again. With a technique left out, which is then in no weight, light that it finds as
     /// well has a higher weight: its share is what that is more.
-    void replay(std::uint32_t pass, std::optional<Merge> left_out, std::size_t first_splat) {
-        const PassContext context{pass, *filter_, never_};
+    void replay(int pass, std::optional<Merge> left_out, std::size_t first_splat) {
+        const PassContext context{std::uint32_t(pass), *filter_, never_};
         PerMerge efforts = full_efforts;
         if (left_out) efforts[std::size_t(*left_out)] = 0.0;
         BidirectionalSettings settings = settings_at(efforts);
@@ -119,13 +124,14 @@ class EffortTrial {
         std::size_t at = first_splat;
         for (const auto& row : lights.splats)
             for (const Splat& splat : row)
-                take(trial_.splats, at++, {.light = average(splat.light)}, left_out);
-        std::vector<std::vector<std::size_t>> done(trial_.rows.size());
+                if (on_film(splat)) take(trial_.splats, at++, {.light = average(splat.light)}, left_out);
+        const int half = pass % 2, first_row = pass / 2 * rows_;
+        std::vector<std::vector<std::size_t>> done((std::size_t(rows_)));
         for (auto& row : done) row.resize(std::size_t(lattice_.columns()));
         SharedCounters unused;
         trace_eye_paths(context, settings, lights, unused, [&](int row, int column, const Contribution& c) {
             const auto r = std::size_t(row), x = std::size_t(column);
-            take(trial_.rows[r][x][pass], done[r][x]++,
+            take(trial_.rows[std::size_t(first_row) + r][x][std::size_t(half)], done[r][x]++,
                  {.light = average(c.light),
                   .weight = c.weight,
                   .merge = c.merge,
@@ -133,6 +139,11 @@ class EffortTrial {
                   .needs_ray = by_chance_ && !c.merge && c.s > 0},
                  left_out);
         });
+    }
+    /// Light paths see a pixel around the film as well.
+    bool on_film(const Splat& s) const {
+        return s.film.x >= 0.0f && s.film.y >= 0.0f && s.film.x < float(options_.width) &&
+               s.film.y < float(options_.height);
     }
     static void take(std::vector<TrialSample>& samples, std::size_t index, const TrialSample& found,
                      std::optional<Merge> left_out) {
@@ -149,7 +160,7 @@ class EffortTrial {
     UpbpPasses<Media> passes_;
     std::unique_ptr<PixelFilter> filter_;
     std::atomic<bool> never_{false};
-    int step_ = row_step, rows_ = 0;
+    int step_ = 1, rows_ = 0, pairs_ = 1;
     Trial trial_;
 };
 

@@ -12,7 +12,7 @@ namespace mote::integrators {
 /// Kernels of a trial are those of this pass: as a picture of some dozens of passes has them.
 inline constexpr std::uint32_t trial_pass = 8;
 
-/// Traces up to 16384 light paths, and eye paths for some of them, a dozen times. Throws Cancelled, and
+/// Traces up to 8192 light paths, and eye paths for some of them, a dozen times. Throws Cancelled, and
 /// OutOfMemory.
 template <bool Media>
 Trial trial_of_efforts(const core::Scene& scene, const core::RenderOptions& options,

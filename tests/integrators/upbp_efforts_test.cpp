@@ -39,8 +39,9 @@ void for_each_pass(const Scene& scene, const integrators::UpbpSettings& settings
         std::vector<double> light((std::size_t(pixels)));
         for (const auto& row : lights.splats)
             for (const integrators::Splat& splat : row)
-                if (const int x = int(splat.film.x); x >= 0 && x < pixels)
-                    light[std::size_t(x)] += double(average(splat.light));
+                if (splat.film.x >= 0.0f && splat.film.x < float(pixels) && splat.film.y >= 0.0f &&
+                    splat.film.y < 1.0f)
+                    light[std::size_t(splat.film.x)] += double(average(splat.light));
         WalkContext walk;
         of_scene.trace_eye_paths(
             context, of_pass, lights, walk,
@@ -100,7 +101,7 @@ TEST_CASE("What merges do not bring is not sought", "[upbp]") {
     surface[0] = 0.999, beams[3] = 0.5;
     pixel[0] = {{.light = 1.0f, .share = surface, .merge = Merge::surface}, {.light = 1e-6f, .share = beams}};
     trial.rows = {{pixel}};
-    CHECK(integrators::efficient_efforts(trial) == PerMerge{1.0, 1.0 / 256.0, 1.0, 1.0 / 256.0});
+    CHECK(integrators::efficient_efforts(trial) == PerMerge{1.0, 1.0 / 64.0, 1.0, 1.0 / 64.0});
     CHECK(integrators::efficient_efforts({}) == integrators::full_efforts);
 }
 
@@ -110,7 +111,7 @@ TEST_CASE("A trial foretells the variance of a pass", "[upbp][statistics]") {
     settings.radius = 0.15, settings.limits.max_depth = 4, settings.all_connections = true;
     for (const PerMerge& efforts : {integrators::full_efforts, PerMerge{0.25, 0.0625, 0.25, 0.0625}}) {
         Mean foretold, planted;
-        for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        for (std::uint64_t seed = 0; seed < 4; ++seed) {
             const RenderOptions options{.seed = seed, .width = edge, .height = 1};
             integrators::Trial trial = integrators::trial_of_efforts<true>(*scene, options, settings);
             foretold.add(integrators::variance_at(trial, efforts));
@@ -159,6 +160,7 @@ TEST_CASE("Efforts of merges change no mean", "[upbp][statistics]") {
     settings.heuristic = integrators::Heuristic::none;
     check("each merge in full");
     settings.connections = true, settings.heuristic = integrators::Heuristic::balance;
+    settings.radius = 0.04;  // connections have no kernel's bias, and take over some light
     check("connections too");
 }
 
