@@ -32,7 +32,7 @@ struct TrialSample {
 /// Samples of a pixel in two passes; those of a query follow one another.
 using TrialPixel = std::array<std::vector<TrialSample>, 2>;
 
-/// What a trial measured. Pixels are in rows, which are summed side by side and then in order.
+/// Samples of a trial, and its work. Pixels are in rows, which are summed side by side and then in order.
 struct Trial {
     std::vector<std::vector<TrialPixel>> rows;
     std::vector<TrialSample> splats;  ///< connections to the lens, of all passes

@@ -90,7 +90,7 @@ class EffortTrial {
     void take_every_row(int step) { step_ = step, rows_ = (lattice_.rows() + step - 1) / step; }
     double share_of_rows() const { return double(rows_) / lattice_.rows(); }
 
-    /// Of a pass as the picture has them. All work is per row that the replays have.
+    /// Counts a pass as the picture has them.
     void count_work() {
         const int step = std::clamp(int(lattice_.size()) / eye_paths, 1, lattice_.rows());
         take_every_row(step);
@@ -111,8 +111,8 @@ class EffortTrial {
         trial_.share_of_splats = share_of_rows();
     }
 
-    /// The same paths again. With a technique left out, which is then in no weight, light that it finds as
-    /// well has a higher weight: its share is what that is more.
+    /// Traces the same paths again. With a technique left out, which is then in no weight, light that it
+    /// finds as well has a higher weight: its share is what that is more.
     void replay(int pass, std::optional<Merge> left_out, std::size_t first_splat) {
         const PassContext context{std::uint32_t(pass), *filter_, never_};
         PerMerge efforts = full_efforts;

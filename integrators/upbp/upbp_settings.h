@@ -22,7 +22,7 @@ struct UpbpSettings {
     bool all_connections = false;
     Efforts efforts = Efforts::automatic;
 
-    /// Only the balance heuristic weighs by densities, and efforts are factors of these.
+    /// Only weights of the balance heuristic are ratios of densities, and efforts are factors of these.
     bool efforts_by_trial() const {
         const bool merges = radius > 0.0 && (surface || point_point || point_beam || beam_beam);
         return efforts == Efforts::automatic && merges && heuristic == Heuristic::balance;

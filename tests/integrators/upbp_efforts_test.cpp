@@ -121,7 +121,7 @@ TEST_CASE("A trial foretells the variance of a pass", "[upbp][statistics]") {
                         for (auto& sample : samples) sample.share = {};
             planted.add(integrators::variance_at(trial, efforts));
         }
-        // Of blocks of two passes, by their difference.
+        // By the difference of two passes.
         Mean measured;
         std::vector<double> before;
         for_each_pass(*scene, settings, efforts, 7, passes, edge, [&](const std::vector<double>& pixels) {

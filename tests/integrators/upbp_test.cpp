@@ -19,9 +19,11 @@ std::string without(const std::string& technique) {
 }
 const std::string beams_alone = merges_alone + without("pp3d") + without("bb1d");
 const std::string points_alone = merges_alone + without("pb2d") + without("bb1d");
+/// At full efforts: with lower ones noise hides planted errors.
 std::string crossings_alone(const std::string& light, const std::string& query) {
     return merges_alone + without("pp3d") + without("pb2d") +
-           fmt::format(R"(<string name="light_beams" value="{}"/><string name="query_beams" value="{}"/>)",
+           fmt::format(R"(<string name="efforts" value="equal"/>
+           <string name="light_beams" value="{}"/><string name="query_beams" value="{}"/>)",
                        light, query);
 }
 
