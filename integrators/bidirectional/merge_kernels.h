@@ -23,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/math/random.h"
 #include "core/math/vec.h"
 #include "integrators/bidirectional/heuristic.h"
 
@@ -46,10 +47,12 @@ struct MergeSettings {
     bool always_sought = false;  ///< whatever the effort, which is in the weights alone: for trials
     BeamLength light_beams = BeamLength::short_beam, eye_beams = BeamLength::long_beam;
 
-    /// Half of the effort, as a factor: the probability with which a light vertex or beam may merge, and that
-    /// with which merges are sought at a vertex or along a beam of the eye.
-    double chance(Merge technique) const {
-        return always_sought ? 1.0 : std::sqrt(effort[std::size_t(technique)]);
+    /// True with the probability sqrt(effort): asked once for a light vertex or beam, which then may merge,
+    /// and once for a query at a vertex or along a beam of the eye. Takes a random number where it is
+    /// below 1.
+    bool sampled(Merge technique, core::Rng& rng) const {
+        const double e = effort[std::size_t(technique)];
+        return always_sought || !(e < 1.0) || rng.next_float() < float(std::sqrt(e));
     }
     bool uses(Merge technique) const { return radius[std::size_t(technique)] > 0.0; }
     bool any() const {

@@ -2,6 +2,9 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+#include <numeric>
+
 #include "integrators/bidirectional/strategies.h"
 
 namespace mote::integrators {
@@ -52,16 +55,14 @@ Moments moments_of(const std::vector<TrialSample>& samples, const PerMerge& effo
 }  // namespace
 
 double variance_at(const Trial& trial, const PerMerge& efforts) {
-    std::vector<double> of_row(trial.rows.size());
-    tbb::parallel_for(std::size_t(0), trial.rows.size(), [&](std::size_t row) {
-        for (const TrialPixel& pixel : trial.rows[row]) {
-            const Moments a = moments_of(pixel[0], efforts), b = moments_of(pixel[1], efforts);
-            const double d = a.mean - b.mean;
-            of_row[row] += 0.5 * (d * d + a.variance + b.variance);
-        }
+    std::vector<double> of_pixel(trial.pixels.size());
+    tbb::parallel_for(std::size_t(0), of_pixel.size(), [&](std::size_t i) {
+        const auto& [first, second] = trial.pixels[i];
+        const Moments a = moments_of(first, efforts), b = moments_of(second, efforts);
+        const double d = a.mean - b.mean;
+        of_pixel[i] = 0.5 * (d * d + a.variance + b.variance);
     });
-    double sum = 0.0;
-    for (const double variance : of_row) sum += variance;
+    double sum = std::accumulate(of_pixel.begin(), of_pixel.end(), 0.0);
     // Each is a path of its own, which seldom meets a pixel: its variance is its square.
     for (const TrialSample& splat : trial.splats) {
         const double light = splat.light / density_left(splat, efforts);
@@ -80,14 +81,16 @@ PerMerge efficient_efforts(const Trial& trial) {
     double least = cost(efforts);
     for (bool changed = true; changed;) {
         changed = false;
-        for (std::size_t t = 0; t < merge_count; ++t)
+        for (std::size_t t = 0; t < merge_count; ++t) {
+            if (!(trial.work_of_merges.queries[t] > 0.0)) continue;
+            PerMerge other = efforts;
             for (const double level : levels) {
-                if (!(trial.work_of_merges.queries[t] > 0.0)) continue;
-                PerMerge other = efforts;
+                if (level == efforts[t]) continue;
                 other[t] = level;
                 const double its = cost(other);
                 if (its < least) least = its, efforts = other, changed = true;
             }
+        }
     }
     return efforts;
 }

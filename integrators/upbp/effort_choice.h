@@ -32,12 +32,12 @@ struct TrialSample {
 /// Samples of a pixel in two passes; those of a query follow one another.
 using TrialPixel = std::array<std::vector<TrialSample>, 2>;
 
-/// Samples of a trial, and its work. Pixels are in rows, which are summed side by side and then in order.
+/// Samples of a trial, and its work.
 struct Trial {
-    std::vector<std::vector<TrialPixel>> rows;
+    std::vector<TrialPixel> pixels;   ///< of all pairs
     std::vector<TrialSample> splats;  ///< connections to the lens, of all passes
-    int pairs = 1;                    ///< of passes; each has its rows
-    double share_of_splats = 1.0;     ///< of the film's light that rows are
+    int pairs = 1;                    ///< of passes
+    double share_of_splats = 1.0;     ///< pixels of a pair, over those that splats were made for
     double work_of_paths = 0.0;       ///< of these pixels, with that of connections
     MergeWork work_of_merges;         ///< at full efforts, in the same units
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cameras/sensors.h"
 #include "core/render/counted_work.h"
 #include "core/render/render_driver.h"
 
@@ -17,8 +18,9 @@ namespace {
 constexpr std::uint32_t trial_stream = 0x6566666fu;  // keeps these paths apart from those of the picture
 // A few fewer than merge_schedule.h has for the first radius: queries find almost what those of a pass do.
 constexpr std::size_t max_paths = 8192;
-constexpr int eye_paths = 2048;     // of half a trial; all merge with all light paths of a pass
-constexpr int max_pairs = 64;       // of passes, where an image has fewer pixels than that
+// Eye paths of half a trial, all of which merge with all light paths of a pass; an image with fewer pixels
+// has more pairs of passes.
+constexpr std::size_t eye_paths = 2048, max_pairs = 64;
 constexpr double max_merges = 1e5;  // of half a trial, which are kept
 
 PixelLattice lattice_of(const RenderOptions& options) {
@@ -51,8 +53,7 @@ class EffortTrial {
     Trial measure() {
         count_work();
         trial_.pairs = pairs_;
-        trial_.rows.resize(std::size_t(rows_ * pairs_));
-        for (auto& row : trial_.rows) row.resize(std::size_t(lattice_.columns()));
+        trial_.pixels.resize(pixels_ * std::size_t(pairs_));
         for (int pass = 0; pass < 2 * pairs_; ++pass) {
             const std::size_t first_splat = trial_.splats.size();
             replay(pass, std::nullopt, first_splat);
@@ -66,49 +67,53 @@ class EffortTrial {
     BidirectionalSettings settings_at(const PerMerge& efforts) const {
         return passes_.settings_of(trial_pass, efforts);
     }
-    /// Eye paths of every `step_`-th row of the lattice: found(row, column, Contribution).
+    /// The lattice is cut into runs of `step` pixels, of which each has one eye path.
+    void take_one_of(std::size_t step) {
+        step_ = std::min(step, lattice_.size());
+        pixels_ = lattice_.size() / step_;
+    }
+    double share_of_pixels() const { return double(pixels_) / double(lattice_.size()); }
+
+    /// Eye paths: found(which pixel, Contribution).
     template <typename Found>
     MergeWork trace_eye_paths(const PassContext& context, const BidirectionalSettings& settings,
                               const UpbpLights& lights, SharedCounters& counters, const Found& found) {
-        std::vector<MergeWork> works((std::size_t(rows_)));
-        tbb::parallel_for(0, rows_, [&](int row) {
+        std::vector<MergeWork> works(pixels_);
+        tbb::parallel_for(std::size_t(0), pixels_, [&](std::size_t i) {
             WalkContext walk;
             walk.cancelled = options_.cancelled;
             walk.cancelled.check();
-            works[std::size_t(row)] = passes_.trace_eye_paths(
-                context, settings, lights, walk,
-                [&](const auto& visit) {
-                    for (int x = 0; x < lattice_.width; x += lattice_.n) visit(x, row * step_ * lattice_.n);
-                },
-                [&](int x, int, const Contribution& c) { found(row, x / lattice_.n, c); });
+            const std::size_t at = i * step_ + hash_keys(trial_stream, i) % step_;
+            const auto columns = std::size_t(lattice_.columns());
+            const int x = int(at % columns) * lattice_.n, y = int(at / columns) * lattice_.n;
+            works[i] = passes_.trace_eye_paths(
+                context, settings, lights, walk, [&](const auto& visit) { visit(x, y); },
+                [&](int, int, const Contribution& c) { found(i, c); });
             counters.add(walk.rays, walk.tracking);
         });
         MergeWork merges;
         for (const MergeWork& work : works) merges.add(work);
         return merges;
     }
-    void take_every_row(int step) { step_ = step, rows_ = (lattice_.rows() + step - 1) / step; }
-    double share_of_rows() const { return double(rows_) / lattice_.rows(); }
 
-    /// Counts a pass as the picture has them.
+    /// Counts a pass as the picture has them, and takes fewer pixels where they find too many merges.
     void count_work() {
-        const int step = std::clamp(int(lattice_.size()) / eye_paths, 1, lattice_.rows());
-        take_every_row(step);
-        pairs_ = std::clamp(eye_paths / (rows_ * lattice_.columns()), 1, max_pairs);
+        take_one_of(std::max<std::size_t>(1, lattice_.size() / eye_paths));
+        pairs_ = int(std::clamp<std::size_t>(eye_paths / pixels_, 1, max_pairs));
         const PassContext context{0, *filter_, never_};
         UpbpLights lights;
         const BidirectionalSettings at_full = settings_at(full_efforts);
         passes_.trace_light_paths(context, at_full, lights);
-        const double of_light = work_of<Media>(passes_.counters()) * share_of_rows();
+        const double of_light = work_of<Media>(passes_.counters()) * share_of_pixels();
         SharedCounters eye;
         const MergeWork merges =
-            trace_eye_paths(context, at_full, lights, eye, [](int, int, const Contribution&) {});
+            trace_eye_paths(context, at_full, lights, eye, [](std::size_t, const Contribution&) {});
         trial_.work_of_paths = work_of<Media>(eye) - merges.of_lookups + of_light;
         trial_.work_of_merges = merges;
-        // Ratios of work are those of fewer rows too.
-        const double most = double(merges.found) * pairs_ / max_merges;
-        if (most > 1.0) take_every_row(int(std::min(1e6, std::ceil(step * most))));
-        trial_.share_of_splats = share_of_rows();
+        // Ratios of work are those of fewer pixels too.
+        const double excess = double(merges.found) * pairs_ / max_merges;
+        if (excess > 1.0) take_one_of(std::size_t(std::ceil(double(step_) * excess)));
+        trial_.share_of_splats = share_of_pixels();
     }
 
     /// Traces the same paths again. With a technique left out, which is then in no weight, light that it
@@ -121,17 +126,17 @@ class EffortTrial {
         settings.merging.always_sought = settings.all_connections = true;
         UpbpLights lights;
         passes_.trace_light_paths(context, settings, lights);
+        const Vec2 film(float(options_.width), float(options_.height));
         std::size_t at = first_splat;
         for (const auto& row : lights.splats)
-            for (const Splat& splat : row)
-                if (on_film(splat)) take(trial_.splats, at++, {.light = average(splat.light)}, left_out);
-        const int half = pass % 2, first_row = pass / 2 * rows_;
-        std::vector<std::vector<std::size_t>> done((std::size_t(rows_)));
-        for (auto& row : done) row.resize(std::size_t(lattice_.columns()));
+            for (const Splat& splat : row)  // light paths see a pixel around the film as well
+                if (on_film(splat.film, film, 0.0f))
+                    take(trial_.splats, at++, {.light = average(splat.light)}, left_out);
+        const std::size_t first_pixel = std::size_t(pass / 2) * pixels_, half = std::size_t(pass % 2);
+        std::vector<std::size_t> taken(pixels_);
         SharedCounters unused;
-        trace_eye_paths(context, settings, lights, unused, [&](int row, int column, const Contribution& c) {
-            const auto r = std::size_t(row), x = std::size_t(column);
-            take(trial_.rows[std::size_t(first_row) + r][x][std::size_t(half)], done[r][x]++,
+        trace_eye_paths(context, settings, lights, unused, [&](std::size_t i, const Contribution& c) {
+            take(trial_.pixels[first_pixel + i][half], taken[i]++,
                  {.light = average(c.light),
                   .weight = c.weight,
                   .merge = c.merge,
@@ -139,11 +144,6 @@ class EffortTrial {
                   .needs_ray = by_chance_ && !c.merge && c.s > 0},
                  left_out);
         });
-    }
-    /// Light paths see a pixel around the film as well.
-    bool on_film(const Splat& s) const {
-        return s.film.x >= 0.0f && s.film.y >= 0.0f && s.film.x < float(options_.width) &&
-               s.film.y < float(options_.height);
     }
     static void take(std::vector<TrialSample>& samples, std::size_t index, const TrialSample& found,
                      std::optional<Merge> left_out) {
@@ -160,7 +160,8 @@ class EffortTrial {
     UpbpPasses<Media> passes_;
     std::unique_ptr<PixelFilter> filter_;
     std::atomic<bool> never_{false};
-    int step_ = 1, rows_ = 0, pairs_ = 1;
+    std::size_t step_ = 1, pixels_ = 0;  ///< that have eye paths
+    int pairs_ = 1;
     Trial trial_;
 };
 

@@ -35,10 +35,9 @@ float last_light(const Medium& medium, const Ray& ray) {
 LightBeams::LightBeams(const std::vector<Subpath>& paths, const std::vector<std::vector<LightBeam>>& rows,
                        const MergeSettings& merging, double size, Rng rng)
     : paths_(&paths), radius_(merging.radius[std::size_t(Merge::beam_beam_1d)]) {
-    const double chance = merging.chance(Merge::beam_beam_1d);
     for (const auto& row : rows)
         for (const LightBeam& b : row)
-            if (!(chance < 1.0) || rng.next_float() < float(chance)) beams_.push_back(&b);
+            if (merging.sampled(Merge::beam_beam_1d, rng)) beams_.push_back(&b);
     const auto piece = float(std::max(size / 24.0, 4.0 * radius_));
     for (std::size_t i = 0; i < beams_.size(); ++i)
         cut(std::uint32_t(i), beams_[i]->beam, beams_[i]->beam.end(merging.light_beams), piece);

@@ -37,7 +37,7 @@ class LightBeams {
     };
     LightBeams() = default;
     /// Keeps references. `radius` of the kernel [m], above 0. `size` of the scene [m]: boxes are
-    /// a 24th of it long, or longer. Beams are left out by `rng` and MergeSettings::chance().
+    /// a 24th of it long, or longer. It has those that MergeSettings::sampled() leaves.
     LightBeams(const std::vector<Subpath>& paths, const std::vector<std::vector<LightBeam>>& rows,
                const MergeSettings& merging, double size, core::Rng rng);
 

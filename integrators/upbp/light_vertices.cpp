@@ -8,9 +8,7 @@ LightVertices::LightVertices(const std::vector<Subpath>& paths, const MergeSetti
     : paths_(&paths) {
     std::vector<LightVertex> on_surfaces, in_media;
     const auto keep = [&](Merge technique, const LightVertex& v, std::vector<LightVertex>& kept) {
-        if (!merging.uses(technique)) return;
-        const double chance = merging.chance(technique);
-        if (!(chance < 1.0) || rng.next_float() < float(chance)) kept.push_back(v);
+        if (merging.uses(technique) && merging.sampled(technique, rng)) kept.push_back(v);
     };
     for (std::size_t p = 0; p < paths.size(); ++p)
         for (std::size_t i = 1; i < paths[p].size(); ++i) {

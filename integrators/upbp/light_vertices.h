@@ -18,8 +18,8 @@ struct LightVertex {
 class LightVertices {
   public:
     LightVertices() = default;
-    /// Keeps a reference to the paths. Techniques without a radius get no structure, and others those that
-    /// MergeSettings::chance() leaves, by `rng`.
+    /// Keeps a reference to the paths. Techniques without a radius get no structure, others the vertices
+    /// that MergeSettings::sampled() leaves.
     LightVertices(const std::vector<Subpath>& paths, const MergeSettings& merging, core::Rng rng);
 
     /// Calls visit(LightVertex) for the vertices on surfaces, or in media, within `radius` [m] of p, in an
@@ -42,8 +42,8 @@ class LightVertices {
 
     const PathVertex& vertex(const LightVertex& v) const { return (*paths_)[v.path].vertices[v.index]; }
     const Subpath& path(const LightVertex& v) const { return (*paths_)[v.path]; }
-    std::size_t on_surfaces() const { return on_surfaces_; }  ///< how many may merge there, for all chances
-    std::size_t in_media() const { return in_media_; }        ///< how many
+    std::size_t on_surfaces() const { return on_surfaces_; }  ///< how many there are, sampled or not
+    std::size_t in_media() const { return in_media_; }        ///< likewise
 
     /// Upper bound of what a vertex takes in all structures [B].
     static constexpr double bytes_per_vertex =

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "integrators/bidirectional/merge_kernels.h"
@@ -37,6 +38,7 @@ struct MergeWork {
             queries[t] += other.queries[t], merges[t] += other.merges[t];
         of_lookups += other.of_lookups, found += other.found;
     }
+    /// At efforts where these counts are those of full ones.
     double at(const PerMerge& efforts) const {
         double work = 0.0;
         for (std::size_t t = 0; t < merge_count; ++t)

@@ -54,13 +54,12 @@ class Merges {
     const MergeWork& work() const { return work_; }  ///< so far
 
   private:
-    /// Calls merges() with the technique's chance, and counts what that takes.
+    /// Calls merges() if the query is sampled, and counts what that takes.
     template <typename F>
     void seek(Merge technique, const F& merges) {
         if (!settings_.merging.uses(technique)) return;
-        const double chance = settings_.merging.chance(technique);
         ++query_;
-        if (chance < 1.0 && !(context_.rng.next_float() < float(chance))) return;
+        if (!settings_.merging.sampled(technique, context_.rng)) return;
         const std::uint64_t lookups = context_.tracking.lookups;
         tested_ = found_ = 0, technique_ = technique;
         merges();
