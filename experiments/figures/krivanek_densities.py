@@ -22,7 +22,7 @@ from renders import main, write_csv
 SCENES = Path(__file__).resolve().parent / "scenes"
 # Kernel radius [m], a tenth of each ball's, and the longest path.
 ROWS = {"ball of fog": (SCENES / "fog_ball.xml", 0.1, 2), "glass ball of fog": (SCENES / "still_life.xml", 0.03, -1)}
-TECHNIQUES = {"pp3d": plotting.GREEN, "pb2d": plotting.ORANGE, "bb1d": plotting.INDIGO}
+TECHNIQUES = {name: plotting.colour(name) for name in ("pp3d", "pb2d", "bb1d")}
 NAMES = {"pp3d": "points, pp3d", "pb2d": "points beside\nbeams, pb2d", "bb1d": "crossing\nbeams, bb1d"}
 PASSES = {"pp3d": 2000, "pb2d": 1000, "bb1d": 250}  # of a seed: points are fast and rarely find light
 DEPTHS = (0.01, 0.1, 1.0, 10.0)  # optical depth of the kernel's radius

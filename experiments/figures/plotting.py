@@ -26,6 +26,7 @@ COLOURS = {
     "screen space + ABC": GREY, "VPLs, ABC": BROWN, "spherical": GREY, "ray lights": PINK, "beam lights": PURPLE,
     "lightcuts": INDIGO, "multidimensional": WINE, "stochastic": BLACK, "light tree": TEAL, "matrix": OLIVE, "resampling": SKY,
     "atlas": BROWN, "atlas, final": ROSE, "bundles from": WINE, "VPL and bundles": PURPLE,
+    "mote_bdpt": SKY, "combined": ORANGE_RED, "bpt": OLIVE, "pp3d": GREEN, "pb2d": ORANGE, "bb1d": INDIGO,
     "every pixel": BLACK, "sub-sampled": GREY, "128 lines, 32": INDIGO, "128 lines, 8": SKY, "512 lines, 32": MAROON,
     "512 lines, 8": ROSE, "VPL maps 12": SKY, "VPL maps 24": BLUE, "VPL imperfect": ORANGE, "VPL volumetric maps 32": SKY,
     "VPL volumetric maps 64": BLUE, "Mitsuba": OLIVE, "Cycles": PURPLE, "Cycles, guided": BLACK}
@@ -55,6 +56,26 @@ def log_axes(axes, x, y, percent=True):
         axis.set_minor_locator(NullLocator())
     axes.grid(True, color="#e4e4e4", linewidth=0.8)
     axes.set_axisbelow(True)
+
+
+def scene_rows(scenes, measure, height, ticks):
+    """A row for each scene, the first on top, with errors along it in logarithms, in per cent: the figure, its axes, and
+    height_of(scene, share of the row from its top)."""
+    made, (axes,) = figure(height=height)
+    for i in range(1, len(scenes)):
+        axes.axhline(i, color="#c8c8c8", lw=0.8)
+    axes.set(ylabel="scene", ylim=(0, len(scenes)), yticks=[i + 0.5 for i in range(len(scenes))])
+    axes.set_yticklabels(scene.replace("_", " ") for scene in reversed(scenes))
+    axes.set(xscale="log", xlabel=measure)
+    axes.xaxis.set_major_locator(LogLocator(subs=ticks, numticks=12))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{100 * v:g} %"))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.grid(True, axis="x", color="#e4e4e4", linewidth=0.8)
+    return made, axes, lambda scene, share: len(scenes) - scenes.index(scene) - share
+
+
+def legend_above(axes):
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.12), ncols=4, fontsize=10, frameon=False)
 
 
 def label_ends(axes, ends, gap=15, size=10):

@@ -38,25 +38,16 @@ def plot(scores, path):
     """A row for each scene, a dot with its interval for each method."""
     suite = json.loads((ROOT / "benchmark/suite.json").read_text(encoding="utf-8"))
     scored = {scene for scene, _ in scores}
-    scenes = [s["name"] for s in suite["scenes"] if s["name"] in scored][::-1]
+    scenes = [s["name"] for s in suite["scenes"] if s["name"] in scored]
     methods = list(dict.fromkeys(method for _, method in scores))
-    made, (axes,) = plotting.figure(height=760)
+    made, axes, height_of = plotting.scene_rows(scenes, f"{plotting.RMSE} at the largest budget; diamonds: denoised", 760, (1,))
     for i, method in enumerate(methods):
-        rows = [(scenes.index(scene) + 1 - (i + 0.5) / len(methods), r) for (scene, m), r in scores.items() if m == method]
+        rows = [(height_of(scene, (i + 0.5) / len(methods)), r) for (scene, m), r in scores.items() if m == method]
         y, x = [y for y, _ in rows], [r["error"] for _, r in rows]
         spread = [[r["error"] - r["error_low"] for _, r in rows], [r["error_high"] - r["error"] for _, r in rows]]
         denoised = "OIDN" in method or method == "mote layers"
         axes.errorbar(x, y, xerr=spread, fmt="D" if denoised else "o", ms=5, lw=1.2, color=colour(method), label=method)
-    for i in range(1, len(scenes)):
-        axes.axhline(i, color="#c8c8c8", lw=0.8)
-    axes.set(ylabel="scene", ylim=(0, len(scenes)), yticks=[i + 0.5 for i in range(len(scenes))])
-    axes.set_yticklabels([s.replace("_", " ") for s in scenes])
-    axes.set(xscale="log", xlabel=f"{plotting.RMSE} at the largest budget; diamonds: denoised")
-    axes.xaxis.set_major_locator(plotting.LogLocator(subs=(1,), numticks=12))
-    axes.xaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"{100 * v:g} %"))
-    axes.xaxis.set_minor_locator(plotting.NullLocator())
-    axes.grid(True, axis="x", color="#e4e4e4", linewidth=0.8)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.12), ncols=4, fontsize=10, frameon=False)
+    plotting.legend_above(axes)
     plotting.save(made, path)
 
 

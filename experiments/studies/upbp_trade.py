@@ -1,20 +1,14 @@
 #!/usr/bin/python3
 """mote_upbp, each of its techniques alone, mote_bdpt, ray lights and volpath at equal processor time in ten scenes with media.
 
-Usage: upbp_trade.py [--seconds 60] [--reference 120] [--size 320x200] [--scenes NAME,...] [--methods "NAME;..."] [--output CSV]
-                     [--pictures FOLDER] [--gallery FOLDER] [--quick]
-Every method renders as many passes as a pilot says fit into --seconds of one thread's processor time. The error is `mote compare`
-against two references of the unbiased method that has least noise, each --reference seconds long; `trimmed` leaves out the thousandth of pixels that differ
-most, where a bright path decides. Each result is appended to --output at once, each picture kept in --pictures, and what is there is
-not rendered again. The tables at the end have the relative RMSE [%] at --seconds (errors fall as the root of the time that a method
-took), the combination over the best of its techniques alone, and volpath's time to the combination's error over that of the
-combination. --gallery writes them there, with a plot. benchmark/generate makes the volumetric caustic.
+Every method renders as many passes as a pilot says fit into 60 s of one thread, at 320 x 200. The error is the relative RMSE
+(measure.py) against two references of the unbiased method that has least noise, of 120 s each; `trimmed` leaves out the thousandth of
+pixels with most of it, where a bright path decides. Errors are those at 60 s: they fall as the root of the time that a method took.
+Said are also the combination's error over that of the best technique alone, and volpath's time to it over the combination's.
+benchmark/generate makes the volumetric caustic. `--quick`: tiny pictures, numbers without a meaning.
 """
-import argparse
 import csv
-import json
-import resource
-import subprocess
+import math
 import sys
 from pathlib import Path
 
@@ -23,215 +17,103 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "experiments/figures"))
 import plotting
-from exr import read_exr
-from origin import Origin
+from measure import pixel_errors
+from origin import table_of
+from renders import main, write_csv
 
 FIGURES = ROOT / "experiments/figures/scenes"
 # File, its settings, and the integrator of the references.
 SCENES = {
-    "glass in thin fog": (FIGURES / "glass_in_fog.xml", [], "mote_bdpt"),
-    "glass in dense fog": (FIGURES / "glass_in_fog.xml", ["sigma_t=2"], "mote_ray_lights"),
-    "glass of milk": (FIGURES / "glass_of_milk.xml", [], "volpath"),
-    "volumetric caustic": (ROOT / "benchmark/generated/volumetric-caustic.xml", [], "mote_bdpt"),
-    "room of dense fog": (ROOT / "experiments/studies/vpls_and_media.xml", ["sigma_t=5", "wall=0.6"], "mote_ray_lights"),
-    "fog grille": (ROOT / "scenes/fog_grille.xml", [], "volpath"),
-    "shade in smoke": (FIGURES / "shade_in_smoke.xml", [], "mote_bdpt"),
-    "smoke room": (ROOT / "scenes/smoke_room.xml", [], "volpath"),
-    "mist": (ROOT / "scenes/mist.xml", [], "volpath"),
-    "cloud": (ROOT / "scenes/cloud.xml", [], "volpath"),
+    "glass in thin fog": (FIGURES / "glass_in_fog.xml", {}, "mote_bdpt"),
+    "glass in dense fog": (FIGURES / "glass_in_fog.xml", {"sigma_t": 2}, "mote_ray_lights"),
+    "glass of milk": (FIGURES / "glass_of_milk.xml", {}, "volpath"),
+    "volumetric caustic": (ROOT / "benchmark/generated/volumetric-caustic.xml", {}, "mote_bdpt"),
+    "room of dense fog": (ROOT / "experiments/studies/vpls_and_media.xml", {"sigma_t": 5, "wall": 0.6}, "mote_ray_lights"),
+    "fog grille": (ROOT / "scenes/fog_grille.xml", {}, "volpath"),
+    "shade in smoke": (FIGURES / "shade_in_smoke.xml", {}, "mote_bdpt"),
+    "smoke room": (ROOT / "scenes/smoke_room.xml", {}, "volpath"),
+    "mist": (ROOT / "scenes/mist.xml", {}, "volpath"),
+    "cloud": (ROOT / "scenes/cloud.xml", {}, "volpath"),
 }
 NO_RAY_LIGHTS = ("glass of milk", "cloud")  # their paths scatter too often for virtual lights
-COLOURS = {"volpath": "volpath", "mote_bdpt": "bidirectional", "ray lights": "ray lights", "combined": "layers", "bpt": "Mitsuba",
-           "surf, pp3d": "VPL", "surf, pb2d": "photon", "surf, bb1d": "lightcuts"}
 TECHNIQUES = ("bpt", "surf", "pp3d", "pb2d", "bb1d")
 
 
 def only(*names):
-    return "mote_upbp", [f"integrator.{t}={'true' if t in names else 'false'}" for t in TECHNIQUES]
+    return {"integrator": "mote_upbp", **{f"integrator.{t}": t in names for t in TECHNIQUES}}
 
 
-ALONE = {"bpt": only("bpt"), "surf, pp3d": only("surf", "pp3d"), "surf, pb2d": only("surf", "pb2d"), "surf, bb1d": only("surf", "bb1d")}
-METHODS = {"volpath": ("volpath", []), "mote_bdpt": ("mote_bdpt", []), "ray lights": ("mote_ray_lights", []),
-           "combined": ("mote_upbp", []), **ALONE}
+ALONE = {"bpt": only("bpt"), "pp3d": only("surf", "pp3d"), "pb2d": only("surf", "pb2d"), "bb1d": only("surf", "bb1d")}
+METHODS = {"volpath": {"integrator": "volpath"}, "mote_bdpt": {"integrator": "mote_bdpt"}, "ray lights": {"integrator": "mote_ray_lights"},
+           "combined": {"integrator": "mote_upbp"}, **ALONE}
 
 
-def render(args, scene, method, passes, seed, exr):
-    """Processor seconds."""
-    path, defined, _ = SCENES[scene]
-    integrator, settings = method
-    width, height = args.size.split("x")
-    words = [w for d in [f"film.width={width}", f"film.height={height}", *defined, *settings] for w in ("-D", d)]
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([args.mote, "render", path, "--integrator", integrator, "--quiet", "-t", "1", "--passes", str(passes),
-                    "--seed", str(seed), *words, "-o", exr], check=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+class Scene:
+    """Renders of one scene, of one thread."""
+
+    def __init__(self, mote, name, quick):
+        self.mote, self.name = mote, name
+        self.path, settings, self.of_references = SCENES[name]
+        width, height = (24, 16) if quick else (320, 200)
+        self.settings = {"film.width": width, "film.height": height, **settings}
+        self.seconds, self.reference_seconds = (0.3, 0.6) if quick else (60, 120)
+
+    def render_for(self, seconds, name, method, seed):
+        """As many passes as take so long, two at the least."""
+        settings, tag = self.settings | method, f"{self.name} {name}".replace(" ", "_")
+        render = lambda part, passes: self.mote.render(self.path, tag + part, settings, passes, seed, threads=1)
+        one, three = render("_one", 1).cpu, render("_three", 3).cpu
+        return render("", max(2, round((seconds - one) / max((three - one) / 2, 1e-3))))
+
+    def references(self):
+        method = {"integrator": self.of_references}
+        return [self.render_for(self.reference_seconds, "reference", method, seed)[""] for seed in (1001, 1002)]
+
+    def errors(self, name, references):
+        """Relative RMSE after `seconds`: of all pixels, and trimmed; NaN where the noise of the references hides it."""
+        picture = self.render_for(self.seconds, name, METHODS[name], 1)
+        squares = pixel_errors(picture[""], references)
+        rest = squares[np.abs(squares) <= np.quantile(np.abs(squares), 0.999)]
+        return [math.sqrt(s.mean() * picture.cpu / self.seconds) if s.mean() > 0.0 else math.nan for s in (squares, rest)]
 
 
-def render_for(args, seconds, scene, method, seed, exr):
-    """Passes that fit into the time, two at the least, and the seconds that they took."""
-    one, three = (render(args, scene, method, n, seed, exr) for n in (1, 3))
-    passes = max(2, round((seconds - one) / max((three - one) / 2, 1e-3)))
-    return passes, render(args, scene, method, passes, seed, exr)
+def study(mote, name, quick):
+    """Rows of the table."""
+    scene = Scene(mote, name, quick)
+    references = scene.references()
+    return [[name, method, *scene.errors(method, references)] for method in METHODS if method != "ray lights" or name not in NO_RAY_LIGHTS]
 
 
-def kept(args, scene, name):
-    """Where a picture is kept."""
-    folder = args.pictures / args.size / scene.replace(" ", "_")
-    folder.mkdir(parents=True, exist_ok=True)
-    return folder / f"{name.replace(', ', '_').replace(' ', '_')}.exr"
+def say(rows):
+    for column, measure in ((2, "all pixels"), (3, "trimmed")):
+        print(f"{measure:20}" + "".join(f"{m:>12}" for m in METHODS) + "    over best   volpath's time")
+        for scene in dict.fromkeys(row[0] for row in rows):
+            errors = {row[1]: row[column] for row in rows if row[0] == scene}
+            ours, best = errors["combined"], min(errors[m] for m in ALONE)
+            cells = "".join(f"{100 * errors[m]:12.1f}" if m in errors else f"{'':12}" for m in METHODS)
+            print(f"{scene:20}{cells}{ours / best:13.2f}{(errors['volpath'] / ours) ** 2:17.1f}")
 
 
-def references(args, scene):
-    """Two of different seeds, each written under its name when it is complete."""
-    paths = [kept(args, scene, f"reference_{seed}") for seed in (1001, 1002)]
-    for seed, path in zip((1001, 1002), paths):
-        if not path.is_file():
-            part = path.with_name("part.exr")
-            render_for(args, args.reference, scene, (SCENES[scene][2], []), seed, part)
-            part.rename(path)
-    return paths
-
-
-def relative_rmse(args, image, pair):
-    said = subprocess.run([args.mote, "compare", image, pair[0], "--second", pair[1], "--json"], check=True, capture_output=True, text=True)
-    return json.loads(said.stdout)["metrics"]["error"]["value"]
-
-
-def trimmed_rmse(image, pair):
-    """Relative RMSE as of docs/testing.md, Eq. 1, without the thousandth of pixels with most of the difference."""
-    picture, a, b = (read_exr(path)[""].astype(float) for path in (image, *pair))
-    squares = np.maximum((a * b).mean(axis=2), 0.0)
-    weight = 1.0 / (squares + (np.median(np.sqrt(squares[squares > 0.0])) / 10.0) ** 2)
-    difference = weight * ((picture - (a + b) / 2) ** 2).mean(axis=2)
-    rest = difference <= np.quantile(difference, 0.999)
-    return np.sqrt(max(0.0, (weight * ((picture - a) * (picture - b)).mean(axis=2))[rest].sum() / (weight * squares)[rest].sum()))
-
-
-def errors_of(args, scene, method):
-    """Cells of the table."""
-    picture, pair = kept(args, scene, method), references(args, scene)
-    return {"relative_rmse": f"{relative_rmse(args, picture, pair):.5g}", "trimmed": f"{trimmed_rmse(picture, pair):.5g}"}
-
-
-def measure_again(args):
-    """Errors of all pictures that are kept, as after a change of references."""
-    found = rows_of(args)
-    rows = [{**row, **errors_of(args, scene, method)} for (scene, method), row in found.items()]
-    with open(args.output, "w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, rows[0])
-        table.writeheader()
-        table.writerows(rows)
-
-
-def rows_of(args):
-    """By scene and method: the rows of this size and time."""
-    if not args.output.is_file():
-        return {}
-    with open(args.output, newline="", encoding="utf-8") as file:
-        return {(r["scene"], r["method"]): r for r in csv.DictReader(file) if (r["size"], float(r["seconds"])) == (args.size, args.seconds)}
-
-
-def append(path, row):
-    new = not path.is_file()
-    with open(path, "a", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, row)
-        if new:
-            table.writeheader()
-        table.writerow(row)
-
-
-def measure(args, scene):
-    done = rows_of(args)
-    left = [m for m in args.methods if (scene, m) not in done and not (m == "ray lights" and scene in NO_RAY_LIGHTS)]
-    for method in left:
-        exr = kept(args, scene, method)
-        passes, taken = render_for(args, args.seconds, scene, METHODS[method], 1, exr)
-        append(args.output, {"scene": scene, "method": method, "size": args.size, "seconds": args.seconds, "passes": passes,
-                             "taken": f"{taken:.2f}", **errors_of(args, scene, method)})
-
-
-def at_seconds(args, column):
-    """By scene, and method: errors at --seconds, as the root of time."""
-    errors = {scene: {} for scene in args.scenes}
-    for (scene, method), r in rows_of(args).items():
-        if scene in errors:
-            errors[scene][method] = float(r[column]) * (float(r["taken"]) / args.seconds) ** 0.5
-    return errors
-
-
-def plot(args, path):
+def plot_table(table, path, seconds):
     """A row for each scene, a dot for each method: `trimmed`."""
-    errors = at_seconds(args, "trimmed")
-    scenes = list(errors)[::-1]
-    made, (axes,) = plotting.figure(height=700)
+    rows = list(csv.DictReader(table_of(table).splitlines()))
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    made, axes, height_of = plotting.scene_rows(scenes, f"{plotting.RMSE} after {seconds} s, without a thousandth of pixels", 700, (1, 2, 5))
     for i, method in enumerate(METHODS):
-        rows = [(y + 1 - (i + 0.5) / len(METHODS), errors[scene][method]) for y, scene in enumerate(scenes) if method in errors[scene]]
-        axes.plot([e for _, e in rows], [y for y, _ in rows], "D" if method == "combined" else "o", ms=7 if method == "combined" else 5,
-                  color=plotting.colour(COLOURS[method]), label=method)
-    for y in range(1, len(scenes)):
-        axes.axhline(y, color="#c8c8c8", lw=0.8)
-    axes.set(ylabel="scene", ylim=(0, len(scenes)), yticks=[y + 0.5 for y in range(len(scenes))])
-    axes.set_yticklabels(scenes)
-    axes.set(xscale="log", xlabel=f"{plotting.RMSE} after {args.seconds:g} s, without a thousandth of pixels")
-    axes.xaxis.set_major_locator(plotting.LogLocator(subs=(1, 2, 5), numticks=12))
-    axes.xaxis.set_major_formatter(plotting.FuncFormatter(lambda v, _: f"{100 * v:g} %"))
-    axes.xaxis.set_minor_locator(plotting.NullLocator())
-    axes.grid(True, axis="x", color="#e4e4e4", linewidth=0.8)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.13), ncols=4, fontsize=10, frameon=False)
+        dots = [(float(row["trimmed"]), height_of(row["scene"], (i + 0.5) / len(METHODS))) for row in rows if row["method"] == method]
+        style = {"marker": "D", "ms": 7} if method == "combined" else {"marker": "o", "ms": 5}
+        axes.plot(*zip(*dots), ls="none", color=plotting.colour(method), label=method, **style)
+    plotting.legend_above(axes)
     plotting.save(made, path)
 
 
-def write_gallery(args):
-    table, picture = args.gallery / "upbp_trade.csv", args.gallery / "upbp_trade.png"
-    whole, trimmed = at_seconds(args, "relative_rmse"), at_seconds(args, "trimmed")
-    with open(table, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["scene", "method", "relative_rmse", "trimmed"])
-        writer.writerows([scene, m, f"{whole[scene][m]:.5g}", f"{trimmed[scene][m]:.5g}"] for scene in whole for m in METHODS if m in whole[scene])
-    plot(args, picture)
-    Origin(__file__, args.quick).stamp(picture, table)
-
-
-def print_table(args, column):
-    print(f"{column:20}" + "".join(f"{m:>12}" for m in METHODS) + "    over best   volpath's time")
-    for scene, errors in at_seconds(args, column).items():
-        cells = "".join(f"{100 * errors[m]:12.1f}" if m in errors else f"{'':12}" for m in METHODS)
-        if {"combined", "volpath", *ALONE} <= set(errors):
-            ours, best = errors["combined"], min(errors[m] for m in ALONE)
-            cells += f"{ours / best:13.2f}{(errors['volpath'] / ours) ** 2:17.1f}"
-        print(f"{scene:20}{cells}")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--mote", default=ROOT / "build/release/bin/mote")
-    parser.add_argument("--seconds", type=float, default=60.0)
-    parser.add_argument("--reference", type=float, default=120.0)
-    parser.add_argument("--size", default="320x200")
-    parser.add_argument("--scenes", type=lambda names: names.split(","), default=list(SCENES))
-    parser.add_argument("--methods", type=lambda names: names.split(";"), default=list(METHODS))
-    parser.add_argument("--output", type=Path, default=ROOT / "out/upbp_trade.csv")
-    parser.add_argument("--pictures", type=Path, default=ROOT / "out/upbp_trade")
-    parser.add_argument("--again", action="store_true", help="measure the kept pictures of this size and time again; leaves no other rows")
-    parser.add_argument("--gallery", type=Path, help="folder of the table and of the plot")
-    parser.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
-    args = parser.parse_args()
-    if args.quick:
-        args.seconds, args.reference, args.size = 0.3, 0.6, "24x16"
-    args.output.parent.mkdir(parents=True, exist_ok=True)
-    for scene in args.scenes:
-        try:
-            measure(args, scene)
-        except subprocess.CalledProcessError as error:
-            sys.exit(f"{scene}: {error}")
-    if args.again:
-        measure_again(args)
-    for column in ("relative_rmse", "trimmed"):
-        print_table(args, column)
-    if args.gallery:
-        write_gallery(args)
+def run(mote, quick, output):
+    rows = [row for name in list(SCENES)[:3 if quick else None] for row in study(mote, name, quick)]
+    say(rows)
+    write_csv(output.with_suffix(".csv"), ["scene", "method", "relative_rmse", "trimmed"], rows)
+    plot_table(output.with_suffix(".csv"), output.with_suffix(".png"), 0.3 if quick else 60)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main(__file__, __doc__, run))
