@@ -156,7 +156,7 @@ TEST_CASE("Efforts of merges change no mean", "[upbp][statistics]") {
         const Mean seldom = light(*scene, settings, efforts, 2);
         INFO(full.value() << " and " << seldom.value() << ", z " << z(full, seldom));
         CHECK(std::fabs(z(full, seldom)) < 3.5);
-        // Planted: merges are always sought, and the weights do not know it.
+        // Planted: merges are always sought, but weighted as if they were not.
         const Mean forgotten = light(*scene, settings, efforts, 2, true);
         INFO(forgotten.value() << " where that is forgotten, z " << z(full, forgotten));
         CHECK(std::fabs(z(full, forgotten)) > 3.5);
