@@ -47,8 +47,8 @@ struct MergeSettings {
     bool always_sought = false;  ///< whatever the effort, which is in the weights alone: for trials
     BeamLength light_beams = BeamLength::short_beam, eye_beams = BeamLength::long_beam;
 
-    /// True with the probability sqrt(effort): once for a light vertex or beam, which then may merge, and once
-    /// for a query at a vertex or along a beam of the eye. Below 1 it takes a random number.
+    /// True with the probability sqrt(effort): once for a light vertex or beam, which then may merge, and
+    /// once for a query at a vertex or along a beam of the eye. Below 1 it takes a random number.
     bool sampled(Merge technique, core::Rng& rng) const {
         const double e = effort[std::size_t(technique)];
         return always_sought || !(e < 1.0) || rng.next_float() < float(std::sqrt(e));
