@@ -33,6 +33,11 @@ namespace mote::integrators {
 enum class Merge : std::uint8_t { surface, point_point_3d, point_beam_2d, beam_beam_1d };
 inline constexpr std::size_t merge_count = 4;
 
+/// One number for each technique: index Merge, or `by_connection`.
+inline constexpr std::size_t by_connection = merge_count, technique_count = merge_count + 1;
+using PerTechnique = std::array<double, technique_count>;
+inline constexpr PerTechnique full_efforts{1.0, 1.0, 1.0, 1.0, 1.0};
+
 enum class BeamLength : std::uint8_t {
     short_beam,  ///< up to the sampled collision
     long_beam    ///< up to the next surface
@@ -42,20 +47,26 @@ struct MergeSettings {
     std::array<double, merge_count> radius{};  ///< [m]; 0: the technique is not used
     /// n of a pass; each may merge with every eye subpath.
     std::array<double, merge_count> light_subpaths{1.0, 1.0, 1.0, 1.0};
-    /// Probability with which a technique finds a merge that is there.
-    std::array<double, merge_count> effort{1.0, 1.0, 1.0, 1.0};
+    /// Probability with which a technique finds a path that is there (integrators/upbp/efforts.h).
+    PerTechnique effort = full_efforts;
     bool always_sought = false;  ///< whatever the effort, which is in the weights alone: for trials
     BeamLength light_beams = BeamLength::short_beam, eye_beams = BeamLength::long_beam;
 
     /// True with the probability sqrt(effort): once for a light vertex or beam, which then may merge, and
     /// once for a query at a vertex or along a beam of the eye. Below 1 it takes a random number.
     bool sampled(Merge technique, core::Rng& rng) const {
-        const double e = effort[std::size_t(technique)];
-        return always_sought || !(e < 1.0) || rng.next_float() < float(std::sqrt(e));
+        return with_chance(std::sqrt(effort[std::size_t(technique)]), rng);
     }
+    /// True with the probability of all connections of an eye vertex.
+    bool connections_sampled(core::Rng& rng) const { return with_chance(effort[by_connection], rng); }
     bool uses(Merge technique) const { return radius[std::size_t(technique)] > 0.0; }
     bool any() const {
         return std::any_of(radius.begin(), radius.end(), [](double r) { return r > 0.0; });
+    }
+
+  private:
+    bool with_chance(double chance, core::Rng& rng) const {
+        return always_sought || !(chance < 1.0) || rng.next_float() < float(chance);
     }
 };
 

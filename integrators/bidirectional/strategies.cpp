@@ -9,10 +9,11 @@ namespace mote::integrators {
 using namespace core;
 
 double light_connection(const LightEnds& ends, const PathVertex& first, const LightPoint& start,
-                        const PathVertex& light, Heuristic heuristic) {
+                        const Subpath& path) {
+    const PathVertex& light = path.vertices[0];
     if (!first.scattering.connectable() || !(light.density > 0.0)) return 0.0;
     const double sampled = ends.sampled(first.scattering.light_receiver(), start, first.distance_squared);
-    return mis_term(heuristic, sampled / light.density);
+    return mis_term(path.heuristic, sampled / light.density) * path.connection_term();
 }
 
 template <bool Media>
@@ -47,12 +48,12 @@ bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& w
 template <bool Media>
 void Strategies<Media>::finish_light_start() {
     PathVertex& first = light_.vertices[1];
-    first.connection = light_connection(ends_, first, light_start_, light_.vertices[0], settings_.heuristic);
+    first.connection = light_connection(ends_, first, light_start_, light_);
 }
 
 template <bool Media>
-float Strategies<Media>::worth_a_ray(float weight) {
-    const float chance = chance_of_ray(weight);
+float Strategies<Media>::worth_a_ray(double weight) {
+    const float chance = chance_of_ray(float(weight));
     if (settings_.all_connections || !(chance < 1.0f)) return 1.0f;
     return context_.rng.next_float() < chance ? chance : 0.0f;
 }
@@ -106,15 +107,15 @@ std::optional<std::pair<Contribution, Vec2>> Strategies<Media>::join_to_lens(std
     const double own =
         settings_.heuristic == Heuristic::none ? 1.0 : mis_term(settings_.heuristic, light_paths_);
     const auto weight_with = [&](double edge) {
-        return weight(light_.others(s - 1, by_camera * edge, before, edge, lens->wi) / own, 0.0);
+        return connection_weight(own, light_.others(s - 1, by_camera * edge, before, edge, lens->wi), 0.0);
     };
-    const float chance = worth_a_ray(weight_with(1.0));
+    const float chance = worth_a_ray(weight_with(guessed_edge(y.sigma_here, double(lens->distance))));
     if (!(chance > 0.0f)) return std::nullopt;
     // Surfaces before the near plane hide nothing.
     Ray ray{v.ray_origin(lens->wi), lens->wi, 0.0f, lens->distance - lens->t_min};
     const Rgb seen = between(ray, v, y.state, ray.t_max);
     if (is_black(seen)) return std::nullopt;
-    const float w = weight_with(edge_along(ray, v, y.state));
+    const auto w = float(weight_with(edge_along(ray, v, y.state)));
     const Rgb light = y.weight * f * seen * (lens->weight * w / (chance * float(light_paths_)));
     return std::pair{Contribution{light, layer, int(s), 1, w}, lens->film_position};
 }
@@ -148,10 +149,10 @@ Contribution Strategies<Media>::hit_light(std::size_t t) {
         const LightEnds::Start start = ends_.start(point);
         const double by_light =
             start.of(v.geometric_cosine(direction), z.distance_squared, z.infinite) * z.edge;
-        others = mis_term(settings_.heuristic, sampled / z.density) +
+        others = mis_term(settings_.heuristic, sampled / z.density) * eye_.connection_term() +
                  mis_term(settings_.heuristic, start.light / z.density) * eye_.through(t - 2, by_light, z);
     }
-    const float w = weight(0.0, others);
+    const auto w = float(connection_weight(1.0, 0.0, others));
     return {z.weight * radiance * w, layer_of(0, t), 0, int(t), w};
 }
 
@@ -180,20 +181,21 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     const double by_light = start.of(v.geometric_cosine(light->wi), d2, infinite);
     const double before = reverse_of_previous(eye_, t - 1, light->wi, TransportMode::radiance);
     const auto weight_with = [&](double edge) {
-        return weight(mis_term(settings_.heuristic, to_light * edge / sampled),
-                      mis_term(settings_.heuristic, start.light / sampled) *
-                          eye_.others(t - 1, by_light * edge, before, edge, light->wi));
+        return connection_weight(own_term(), mis_term(settings_.heuristic, to_light * edge / sampled),
+                                 mis_term(settings_.heuristic, start.light / sampled) *
+                                     eye_.others(t - 1, by_light * edge, before, edge, light->wi)) /
+               effort();
     };
-    const float chance = worth_a_ray(weight_with(1.0));
+    const float chance = worth_a_ray(weight_with(guessed_edge(z.sigma_here, double(light->distance))));
     if (!(chance > 0.0f)) return {};
     const Vec3 origin = v.ray_origin(light->wi);
     const float end = shadow_end(origin, light->distance);
     const Ray ray{origin, light->wi, 0.0f, light->delta ? light->distance : end};
     const Rgb seen = between(ray, v, z.state, end);
     if (is_black(seen)) return {};
-    const float w = weight_with(edge_along(ray, v, z.state));
-    return {z.weight * f * light->weight * seen * (w / (choice.probability * chance)), layer_of(1, t), 1,
-            int(t), w};
+    const double w = weight_with(edge_along(ray, v, z.state));
+    return {z.weight * f * light->weight * seen * float(w / double(choice.probability * chance)),
+            layer_of(1, t), 1, int(t), float(w)};
 }
 
 template <bool Media>
@@ -216,26 +218,29 @@ bool Strategies<Media>::prepare(std::size_t s, std::size_t t, Connection& c) con
     c.to_eye = double(y.scattering.pdf_solid_angle(-c.wi, TransportMode::power)) * z.area_measure(c.wi, d2);
     c.before_light = reverse_of_previous(light_, s - 1, -c.wi, TransportMode::power);
     c.before_eye = reverse_of_previous(eye_, t - 1, c.wi, TransportMode::radiance);
-    c.expected = average(c.light) * weight_of(c, t, 1.0);
+    c.guessed = guessed_edge(0.5 * (y.sigma_here + z.sigma_here), std::sqrt(d2));
+    c.expected = average(c.light) * float(weight_of(c, t, c.guessed) * c.guessed);
     return true;
 }
 
 template <bool Media>
-float Strategies<Media>::weight_of(const Connection& c, std::size_t t, double edge) const {
-    if (settings_.heuristic == Heuristic::none) return 1.0f;
-    return weight(light_.others(c.s - 1, c.to_light * edge, c.before_light, edge, c.wi),
-                  eye_.others(t - 1, c.to_eye * edge, c.before_eye, edge, c.wi));
+double Strategies<Media>::weight_of(const Connection& c, std::size_t t, double edge) const {
+    if (settings_.heuristic == Heuristic::none) return 1.0 / effort();
+    return connection_weight(own_term(),
+                             light_.others(c.s - 1, c.to_light * edge, c.before_light, edge, c.wi),
+                             eye_.others(t - 1, c.to_eye * edge, c.before_eye, edge, c.wi)) /
+           effort();
 }
 
 template <bool Media>
 Contribution Strategies<Media>::test(const Connection& c, std::size_t t) {
     const PathVertex &y = light_.vertices[c.s - 1], &z = eye_.vertices[t - 1];
-    const float chance = worth_a_ray(weight_of(c, t, 1.0));
+    const float chance = worth_a_ray(weight_of(c, t, c.guessed));
     if (!(chance > 0.0f)) return {};
     const Ray segment = segment_between(z.scattering, y.scattering, c.wi);
     const Rgb seen = between(segment, z.scattering, z.state, shadow_end(segment.origin, segment.t_max));
     if (is_black(seen)) return {};
-    const float w = weight_of(c, t, edge_along(segment, z.scattering, z.state));
+    const auto w = float(weight_of(c, t, edge_along(segment, z.scattering, z.state)));
     return {c.light * seen * (w / chance), layer_of(c.s, t), int(c.s), int(t), w};
 }
 

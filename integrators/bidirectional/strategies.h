@@ -25,8 +25,8 @@ struct Contribution {
     core::Rgb light{0.0f};
     Transport layer{};
     int s = 0, t = 0;
-    float weight = 0.0f;           ///< of multiple importance sampling, in `light`
-    std::optional<Merge> merge{};  ///< the technique that found it, with s = t = 0; none: a connection
+    float weight = 0.0f;  ///< of multiple importance sampling, in `light`; over the effort of its technique
+    std::optional<Merge> merge{};  ///< the technique that found it, with s = t = 0; none: (s, t)
     std::uint32_t query = 0;       ///< merges of one query of an eye path are sought together
 };
 
@@ -37,9 +37,16 @@ inline float chance_of_ray(float weight) {
     return std::min(1.0f, weight / worth);
 }
 
-/// PathVertex::connection of the first vertex behind the light, `start`, which is vertex 0.
+/// PathVertex::connection of the first vertex behind the light, `start`, which is vertex 0 of `path`.
 double light_connection(const LightEnds& ends, const PathVertex& first, const LightPoint& start,
-                        const PathVertex& light, Heuristic heuristic);
+                        const Subpath& path);
+
+/// Counts of connections, for their work.
+struct ConnectionCounts {
+    std::uint64_t pairs = 0;    ///< of vertices, whose light is known but for what is in between
+    std::uint64_t rays = 0;     ///< for occluders and boundaries
+    std::uint64_t lookups = 0;  ///< of media
+};
 
 template <bool Media>
 class Strategies {
@@ -105,6 +112,8 @@ class Strategies {
     const LightPoint& light_start() const { return light_start_; }  ///< of the light path
     const core::Vec3& lens_point() const { return lens_point_; }    ///< that a light path is joined to
 
+    const ConnectionCounts& connection_counts() const { return counts_; }  ///< of eye vertices so far
+
   private:
     bool start_light_path(core::Sampler& sampler, SubpathWalk<Media>& walk);
     void finish_light_start();
@@ -118,22 +127,32 @@ class Strategies {
         core::Rgb light{0.0f};            ///< unoccluded and unweighted
         double to_light, to_eye;          ///< densities of the vertices from the other end, without tau
         double before_light, before_eye;  ///< of those before them
+        double guessed = 1.0;             ///< tau of the edge
         float expected = 0.0f;            ///< its weight in the choice
     };
     bool prepare(std::size_t s, std::size_t t, Connection& connection) const;
-    float weight_of(const Connection& c, std::size_t t, double edge) const;
+    /// Over the effort of connections.
+    double weight_of(const Connection& c, std::size_t t, double edge) const;
     Contribution test(const Connection& connection, std::size_t t);
     template <typename Found>
     void connect(std::size_t t, const Found& found);
 
-    /// 1 over the sum of all techniques' h in terms of this one's.
-    static float weight(double fewer_from_light, double fewer_from_eye) {
-        return float(1.0 / (1.0 + fewer_from_light + fewer_from_eye));
-    }
     Transport layer_of(std::size_t s, std::size_t t) const { return layer_of(s, eye_.vertices[t - 1]); }
     bool wanted(std::size_t s, std::size_t t) const { return settings_.limits.wanted[layer_of(s, t)]; }
-    /// chance_of_ray(), by the weight without the tau of the edge itself; 0: not this time.
-    float worth_a_ray(float weight);
+    /// chance_of_ray(), by the weight with a guess of the edge's tau; 0: not this time. An effort is no
+    /// reason against the ray: it was won already.
+    float worth_a_ray(double weight);
+    /// PathVertex::connection of a connection; 1 where every technique counts in full.
+    double own_term() const { return settings_.heuristic == Heuristic::none ? 1.0 : eye_.connection_term(); }
+    double effort() const { return settings_.merging.effort[by_connection]; }
+    template <typename Found>
+    void connect_eye_vertex(std::size_t t, float u_light, const core::Vec2& u, const Found& found);
+    /// A guess of tau of an edge through media with this extinction [1/m], before it is marched: it decides
+    /// how often the edge is tested. Never so small that light is rare and bright where it is wrong.
+    static double guessed_edge(double sigma, double distance) {
+        constexpr double least = 1.0 / 32.0;
+        return Media && sigma > 0.0 ? least + (1.0 - least) * std::exp(-sigma * distance) : 1.0;
+    }
     double edge_along(const core::Ray& ray, const core::ScatteringVertex& from,
                       const core::MediumState& state);
     /// Visibility times an unbiased estimate of the transmittance.
@@ -153,6 +172,7 @@ class Strategies {
     bool pinhole_ = scene_.camera().traits().delta_position;
     Subpath light_, eye_;
     std::vector<Connection> connections_;
+    ConnectionCounts counts_;
     LightPoint light_start_, light_point_;
     core::Vec3 lens_point_{0.0f};
 };
@@ -217,13 +237,27 @@ void Strategies<Media>::trace_eye_path(const EyeRay& eye, const Found& found, co
         if (last.infinite) return;
         const core::Vec2 choice = sampler.next_2d(), u = sampler.next_2d();
         if (!last.scattering.connectable() || !settings_.connections) continue;
-        if (allowed(1, t) && wanted(1, t)) found(draw_light(t, choice.x, u));
-        connect(t, found);
+        if (settings_.merging.connections_sampled(context_.rng)) connect_eye_vertex(t, choice.x, u, found);
     }
 }
 
+/// Joins the last eye vertex to a light and to the light path.
+template <bool Media>
+template <typename Found>
+void Strategies<Media>::connect_eye_vertex(std::size_t t, float u_light, const core::Vec2& u,
+                                           const Found& found) {
+    const core::RayCounters& rays = context_.rays;
+    const std::uint64_t rays_before = rays.occlusion + rays.boundary,
+                        lookups_before = context_.tracking.lookups;
+    if (allowed(1, t) && wanted(1, t)) found(draw_light(t, u_light, u));
+    connect(t, found);
+    counts_.rays += rays.occlusion + rays.boundary - rays_before;
+    counts_.lookups += context_.tracking.lookups - lookups_before;
+}
+
 /// Joins the last eye vertex to the light path. Of all connections one is tested, sampled by what it would
-/// bring if nothing were in between: shadow rays are then as many as vertices, not pairs of them.
+/// bring if no surface were in between, with a guess of the transmittance: shadow rays are then as many as
+/// vertices, not pairs of them.
 template <bool Media>
 template <typename Found>
 void Strategies<Media>::connect(std::size_t t, const Found& found) {
@@ -232,6 +266,7 @@ void Strategies<Media>::connect(std::size_t t, const Found& found) {
     for (std::size_t s = 2; s <= light_.size() && allowed(s, t); ++s) {
         Connection c;
         if (!wanted(s, t) || !prepare(s, t, c)) continue;
+        ++counts_.pairs;
         if (settings_.all_connections)
             found(test(c, t));
         else if (c.expected > 0.0f)

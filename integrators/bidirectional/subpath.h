@@ -44,6 +44,7 @@ struct PathVertex {
     bool infinite = false;  ///< a light at infinity: the start of a light path, the end of an eye path
     bool start = false;     ///< on a light, with its normal there, or zero
     core::Vec3 light_normal{0.0f};
+    double sigma_here = 0.0;    ///< mean over channels [1/m], of the medium on the side of scattering.wo
     core::Rgb sigma_s{0.0f};    ///< [1/m], in media where subpaths are merged
     double sigma_t = 0.0;       ///< mean over channels [1/m], likewise
     double point_merges = 0.0;  ///< sum of h(K) of the merges of two points
@@ -71,6 +72,8 @@ struct Subpath {
     MergeSettings merging;  ///< none by default
 
     std::size_t size() const { return vertices.size(); }
+    /// PathVertex::connection of an edge between vertices that were both sampled by scattering.
+    double connection_term() const { return mis_term(heuristic, merging.effort[by_connection]); }
 
     /// h, in terms of the vertices' densities, of the technique that connects along the edge to vertex k: 0
     /// where a delta part stands at one of its ends. `last`: k is where the path is connected.

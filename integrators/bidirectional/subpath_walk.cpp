@@ -109,6 +109,7 @@ void SubpathWalk<Media>::append(const WalkEvent& event, const MediumState& start
     PathVertex& vertex = path_.vertices[k];
     const PathVertex& previous = path_.vertices[k - 1];
     vertex.state = state_, vertex.weight = channel_throughput();
+    vertex.connection = path_.connection_term();
     vertex.infinite = event.kind == WalkEvent::Kind::escaped;
     if (vertex.infinite)
         vertex.scattering.wo = -ray_.direction;
@@ -130,6 +131,8 @@ void SubpathWalk<Media>::append(const WalkEvent& event, const MediumState& start
         else if (!vertex.infinite)
             edge.t_max = event.distance;
         vertex.edge = edge_transmittance(scene_, edge, from_infinity ? state_ : start, context_.tracking);
+        if (const Medium* medium = state_.current(); medium && !vertex.infinite)
+            vertex.sigma_here = double(average(medium->coefficients(vertex.scattering.position).sigma_t));
     }
     vertex.density = density_ * vertex.area_measure(ray_.direction, vertex.distance_squared) * vertex.edge;
     if (path_.merging.any() && !vertex.infinite)

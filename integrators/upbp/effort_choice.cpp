@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -19,71 +20,104 @@ struct Moments {
 };
 
 /// Density of the sample's path at these efforts, over that at full ones.
-double density_left(const TrialSample& sample, const PerMerge& efforts) {
+double density_left(const TrialSample& sample, const PerTechnique& efforts) {
     double left = 1.0;
-    for (std::size_t t = 0; t < merge_count; ++t) left -= (1.0 - efforts[t]) * sample.share[t];
+    for (std::size_t t = 0; t < technique_count; ++t) left -= (1.0 - efforts[t]) * sample.share[t];
     return left;
 }
 
-void add_connection(const TrialSample& sample, const PerMerge& efforts, Moments& moments) {
-    const double left = density_left(sample, efforts);
-    const double chance = sample.needs_ray ? double(chance_of_ray(float(sample.weight / left))) : 1.0;
-    const double light = sample.light / left;
-    if (chance > 0.0) moments.add(light, light * light * (1.0 / chance - 1.0));
+/// Samples of one query, or of the connections of one vertex, from sample i on; i is then behind them.
+void add_query(const std::vector<TrialSample>& samples, std::size_t& i, const PerTechnique& efforts,
+               Moments& moments) {
+    const TrialSample& first = samples[i];
+    double light = 0.0, squares = 0.0, of_rays = 0.0;
+    for (; i < samples.size(); ++i) {
+        const TrialSample& s = samples[i];
+        if (s.technique != first.technique || s.query != first.query) break;
+        const double left = density_left(s, efforts), c = s.light / left;
+        const double chance = s.needs_ray ? double(chance_of_ray(float(s.weight / left))) : 1.0;
+        light += c, squares += c * c;
+        if (chance > 0.0) of_rays += c * c * (1.0 / chance - 1.0);
+    }
+    const double e = efforts[*first.technique], q = std::sqrt(e);
+    const double moment = *first.technique == by_connection
+                              ? e * (light * light + of_rays)                   // Eq. (3)
+                              : e * (q * light * light + (1.0 - q) * squares);  // Eq. (2)
+    moments.add(e * light, moment - e * e * light * light);
 }
 
-Moments moments_of(const std::vector<TrialSample>& samples, const PerMerge& efforts) {
+Moments moments_of(const std::vector<TrialSample>& samples, const PerTechnique& efforts) {
     Moments moments;
-    for (std::size_t i = 0; i < samples.size();) {
-        const TrialSample& first = samples[i];
-        if (!first.merge) {
-            add_connection(first, efforts, moments), ++i;
-            continue;
-        }
-        double light = 0.0, squares = 0.0;
-        for (; i < samples.size() && samples[i].merge && samples[i].query == first.query; ++i) {
-            const double c = samples[i].light / density_left(samples[i], efforts);
-            light += c, squares += c * c;
-        }
-        const double effort = efforts[std::size_t(*first.merge)], q = std::sqrt(effort);
-        moments.add(effort * light,
-                    effort * (q * light * light + (1.0 - q) * squares - effort * light * light));
-    }
+    for (std::size_t i = 0; i < samples.size();)
+        if (samples[i].technique)
+            add_query(samples, i, efforts, moments);
+        else
+            moments.add(samples[i].light / density_left(samples[i], efforts), 0.0), ++i;
     return moments;
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
 }  // namespace
 
-double variance_at(const Trial& trial, const PerMerge& efforts) {
+void set_weights_by_light(Trial& trial) {
+    constexpr std::size_t part = 8, parts = 8;
+    const std::size_t n = trial.pixels.size() / std::size_t(trial.pairs);
+    std::vector<double> light((n + part - 1) / part);  // sums
+    for (std::size_t i = 0; i < trial.pixels.size(); ++i)
+        for (const auto& samples : trial.pixels[i])
+            light[i % n / part] += moments_of(samples, full_efforts).mean;
+    for (const TrialSplat& splat : trial.splats)
+        light[splat.pixel / part] += splat.sample.light * trial.share_of_splats;
+    for (std::size_t p = 0; p < light.size(); ++p)
+        light[p] /= 2.0 * trial.pairs * double(std::min(n, (p + 1) * part) - p * part);
+    const double least = 0.1 * median(light);
+    trial.weights.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t first = i / (part * parts) * parts, last = std::min(first + parts, light.size());
+        const double here =
+            median({light.begin() + std::ptrdiff_t(first), light.begin() + std::ptrdiff_t(last)});
+        trial.weights[i] = 1.0 / std::max(here * here + least * least, 1e-30);
+    }
+}
+
+double variance_at(const Trial& trial, const PerTechnique& efforts, double outliers) {
     std::vector<double> of_pixel(trial.pixels.size());
     tbb::parallel_for(std::size_t(0), of_pixel.size(), [&](std::size_t i) {
         const auto& [first, second] = trial.pixels[i];
         const Moments a = moments_of(first, efforts), b = moments_of(second, efforts);
         const double d = a.mean - b.mean;
-        of_pixel[i] = 0.5 * (d * d + a.variance + b.variance);
+        of_pixel[i] = 0.5 * trial.weights[i % trial.weights.size()] * (d * d + a.variance + b.variance);
     });
-    double sum = std::accumulate(of_pixel.begin(), of_pixel.end(), 0.0);
+    const auto last = of_pixel.end() - std::ptrdiff_t(outliers * double(of_pixel.size()));
+    if (last != of_pixel.end()) std::nth_element(of_pixel.begin(), last, of_pixel.end());
+    double sum = std::accumulate(of_pixel.begin(), last, 0.0);
     // Each is a path of its own, which seldom meets a pixel: its variance is its square.
-    for (const TrialSample& splat : trial.splats) {
-        const double light = splat.light / density_left(splat, efforts);
-        sum += 0.5 * trial.share_of_splats * light * light;
+    for (const TrialSplat& splat : trial.splats) {
+        const double light = splat.sample.light / density_left(splat.sample, efforts);
+        sum += 0.5 * trial.share_of_splats * trial.weights[splat.pixel] * light * light;
     }
     return sum / trial.pairs;
 }
 
 /// One technique after the other, until none changes.
-PerMerge efficient_efforts(const Trial& trial) {
+PerTechnique efficient_efforts(const Trial& trial) {
     constexpr std::array<double, 4> levels{1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0};
-    PerMerge efforts = full_efforts;
-    const auto cost = [&](const PerMerge& e) {
-        return variance_at(trial, e) * (trial.work_of_paths + trial.work_of_merges.at(e));
+    constexpr double outliers = 0.002;  // one bright path in a few thousand decides nothing
+    PerTechnique efforts = full_efforts;
+    const auto cost = [&](const PerTechnique& e) {
+        return variance_at(trial, e, outliers) * (trial.work_of_paths + trial.work.at(e));
     };
     double least = cost(efforts);
     for (bool changed = true; changed;) {
         changed = false;
-        for (std::size_t t = 0; t < merge_count; ++t) {
-            if (!(trial.work_of_merges.queries[t] > 0.0)) continue;
-            PerMerge other = efforts;
+        for (std::size_t t = 0; t < technique_count; ++t) {
+            if (!trial.work.uses(t)) continue;
+            PerTechnique other = efforts;
             for (const double level : levels) {
                 if (level == efforts[t]) continue;
                 other[t] = level;

@@ -16,8 +16,8 @@ using namespace core;
 namespace {
 
 constexpr std::uint32_t trial_stream = 0x6566666fu;  // keeps these paths apart from those of the picture
-// A few fewer than merge_schedule.h has for the first radius: queries find almost what those of a pass do.
-constexpr std::size_t max_paths = 8192;
+// Light paths and pixels of the lattice.
+constexpr std::size_t max_paths = 4096;
 // Eye paths of half a trial, all of which merge with all light paths of a pass; an image with fewer pixels
 // has more pairs of passes.
 constexpr std::size_t eye_paths = 2048, max_pairs = 64;
@@ -57,14 +57,15 @@ class EffortTrial {
         for (int pass = 0; pass < 2 * pairs_; ++pass) {
             const std::size_t first_splat = trial_.splats.size();
             replay(pass, std::nullopt, first_splat);
-            for (std::size_t t = 0; t < merge_count; ++t)
-                if (trial_.work_of_merges.queries[t] > 0.0) replay(pass, Merge(t), first_splat);
+            for (std::size_t t = 0; t < technique_count; ++t)
+                if (trial_.work.uses(t)) replay(pass, t, first_splat);
         }
+        set_weights_by_light(trial_);
         return std::move(trial_);
     }
 
   private:
-    BidirectionalSettings settings_at(const PerMerge& efforts) const {
+    BidirectionalSettings settings_at(const PerTechnique& efforts) const {
         return passes_.settings_of(trial_pass, efforts);
     }
     /// The lattice is cut into runs of `step` pixels, of which each has one eye path.
@@ -76,9 +77,9 @@ class EffortTrial {
 
     /// Eye paths: found(which pixel, Contribution).
     template <typename Found>
-    MergeWork trace_eye_paths(const PassContext& context, const BidirectionalSettings& settings,
-                              const UpbpLights& lights, SharedCounters& counters, const Found& found) {
-        std::vector<MergeWork> works(pixels_);
+    TechniqueWork trace_eye_paths(const PassContext& context, const BidirectionalSettings& settings,
+                                  const UpbpLights& lights, SharedCounters& counters, const Found& found) {
+        std::vector<TechniqueWork> works(pixels_);
         tbb::parallel_for(std::size_t(0), pixels_, [&](std::size_t i) {
             WalkContext walk;
             walk.cancelled = options_.cancelled;
@@ -91,9 +92,9 @@ class EffortTrial {
                 [&](int, int, const Contribution& c) { found(i, c); });
             counters.add(walk.rays, walk.tracking);
         });
-        MergeWork merges;
-        for (const MergeWork& work : works) merges.add(work);
-        return merges;
+        TechniqueWork sum;
+        for (const TechniqueWork& work : works) sum.add(work);
+        return sum;
     }
 
     /// Counts a pass as the picture has them, and takes fewer pixels where they find too many merges.
@@ -106,22 +107,20 @@ class EffortTrial {
         passes_.trace_light_paths(context, at_full, lights);
         const double of_light = work_of<Media>(passes_.counters()) * share_of_pixels();
         SharedCounters eye;
-        const MergeWork merges =
-            trace_eye_paths(context, at_full, lights, eye, [](std::size_t, const Contribution&) {});
-        trial_.work_of_paths = work_of<Media>(eye) - merges.of_lookups + of_light;
-        trial_.work_of_merges = merges;
+        trial_.work = trace_eye_paths(context, at_full, lights, eye, [](std::size_t, const Contribution&) {});
+        trial_.work_of_paths = work_of<Media>(eye) - trial_.work.of_pass + of_light;
         // Ratios of work are those of fewer pixels too.
-        const double excess = double(merges.found) * pairs_ / max_merges;
+        const double excess = double(trial_.work.merges) * pairs_ / max_merges;
         if (excess > 1.0) take_one_of(std::size_t(std::ceil(double(step_) * excess)));
         trial_.share_of_splats = share_of_pixels();
     }
 
-    /// Traces the same paths again. With a technique left out, which is then in no weight, light that it
-    /// finds as well has a higher weight: its share is what that is more.
-    void replay(int pass, std::optional<Merge> left_out, std::size_t first_splat) {
+    /// Traces the same paths again. At half the effort of a technique, light that it finds as well has a
+    /// higher weight: its share is twice what that is more.
+    void replay(int pass, std::optional<std::size_t> halved, std::size_t first_splat) {
         const PassContext context{std::uint32_t(pass), *filter_, never_};
-        PerMerge efforts = full_efforts;
-        if (left_out) efforts[std::size_t(*left_out)] = 0.0;
+        PerTechnique efforts = full_efforts;
+        if (halved) efforts[*halved] = 0.5;
         BidirectionalSettings settings = settings_at(efforts);
         settings.merging.always_sought = settings.all_connections = true;
         UpbpLights lights;
@@ -130,28 +129,42 @@ class EffortTrial {
         std::size_t at = first_splat;
         for (const auto& row : lights.splats)
             for (const Splat& splat : row)  // light paths see a pixel around the film as well
-                if (on_film(splat.film, film, 0.0f))
-                    take(trial_.splats, at++, {.light = average(splat.light)}, left_out);
+                if (on_film(splat.film, film, 0.0f)) {
+                    if (!halved) trial_.splats.push_back({{}, pixel_of(splat)});
+                    take(trial_.splats.at(at++).sample, {.light = average(splat.light)}, halved);
+                }
         const std::size_t first_pixel = std::size_t(pass / 2) * pixels_, half = std::size_t(pass % 2);
         std::vector<std::size_t> taken(pixels_);
         SharedCounters unused;
         trace_eye_paths(context, settings, lights, unused, [&](std::size_t i, const Contribution& c) {
-            take(trial_.pixels[first_pixel + i][half], taken[i]++,
+            std::vector<TrialSample>& samples = trial_.pixels[first_pixel + i][half];
+            if (!halved) samples.emplace_back();
+            take(samples.at(taken[i]++),
                  {.light = average(c.light),
                   .weight = c.weight,
-                  .merge = c.merge,
-                  .query = c.query,
+                  .technique = technique_of(c),
+                  .query = c.merge ? c.query : std::uint32_t(c.t),
                   .needs_ray = by_chance_ && !c.merge && c.s > 0},
-                 left_out);
+                 halved);
         });
     }
-    static void take(std::vector<TrialSample>& samples, std::size_t index, const TrialSample& found,
-                     std::optional<Merge> left_out) {
-        if (!left_out)
-            samples.push_back(found);
-        else if (TrialSample& full = samples.at(index); full.light > 0.0f)
-            full.share[std::size_t(*left_out)] =
-                found.light > 0.0f ? std::max(0.0, 1.0 - double(full.light) / double(found.light)) : 1.0;
+    static void take(TrialSample& sample, const TrialSample& found, std::optional<std::size_t> halved) {
+        if (!halved)
+            sample = found;
+        else if (sample.light > 0.0f)
+            sample.share[*halved] =
+                std::clamp(2.0 * (1.0 - double(sample.light) / double(found.light)), 0.0, 1.0);
+    }
+    std::size_t pixel_of(const Splat& splat) const {
+        const auto cell = [&](float x, int cells) { return std::clamp(int(x) / lattice_.n, 0, cells - 1); };
+        const auto index =
+            std::size_t(cell(splat.film.y, lattice_.rows())) * std::size_t(lattice_.columns()) +
+            std::size_t(cell(splat.film.x, lattice_.columns()));
+        return std::min(index / step_, pixels_ - 1);
+    }
+    static std::optional<std::size_t> technique_of(const Contribution& c) {
+        if (c.merge) return std::size_t(*c.merge);
+        return c.s > 0 ? std::optional(by_connection) : std::nullopt;
     }
 
     RenderOptions options_;

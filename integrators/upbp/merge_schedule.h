@@ -18,15 +18,20 @@ inline constexpr double paths_of_first_beam_radius = 100.0;
 inline std::size_t paths_with_beams(std::size_t pixels) { return std::min(pixels, max_paths_with_beams); }
 
 /// Radii and numbers of light paths. `size`: radius of the scene's bounds [m]; 0: they are a point.
+/// `light_paths`: fewer than pixels in a trial, with so much larger radii that queries find as many.
 inline MergeSettings merges_of_pass(const UpbpSettings& settings, std::uint32_t pass, double size,
-                                    std::size_t pixels, bool media) {
+                                    std::size_t pixels, std::size_t light_paths, bool media) {
     MergeSettings merging;
     const double first = settings.radius * (size > 0.0 ? size : 1.0);
     const auto set = [&](Merge technique, bool used, int dimensions) {
-        const auto n = double(dimensions == 1 ? paths_with_beams(pixels) : pixels);
+        const auto count = [&](std::size_t paths) {
+            return double(dimensions == 1 ? paths_with_beams(paths) : paths);
+        };
+        const double n = count(light_paths), of_picture = count(pixels);
         const double few = dimensions == 1 ? paths_of_first_beam_radius : paths_of_first_radius;
         const double fraction = gathering::radius_fraction(pass, settings.alpha, dimensions) *
-                                gathering::radius_for_paths(n, few, dimensions);
+                                gathering::radius_for_paths(of_picture, few, dimensions) *
+                                std::pow(of_picture / n, 1.0 / dimensions);
         merging.radius[std::size_t(technique)] = used ? first * fraction : 0.0;
         merging.light_subpaths[std::size_t(technique)] = n;
     };

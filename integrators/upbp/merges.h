@@ -13,9 +13,9 @@
 
 #include "gathering/photon_maps/surface_photon_map.h"
 #include "integrators/bidirectional/strategies.h"
+#include "integrators/upbp/efforts.h"
 #include "integrators/upbp/light_beams.h"
 #include "integrators/upbp/light_vertices.h"
-#include "integrators/upbp/merge_efforts.h"
 
 namespace mote::integrators {
 
@@ -40,7 +40,8 @@ class Merges {
         if constexpr (Media)
             for (const Beam& beam : walk.beams()) {
                 start_on_beam(beam, on_eye_);
-                on_eye_.connection = beam.index == 1 ? strategies_.lens_connection() : 1.0;
+                on_eye_.connection = beam.index == 1 ? strategies_.lens_connection()
+                                                     : strategies_.eye_path().connection_term();
                 seek(Merge::point_beam_2d, [&] { with_points(beam, found); });
                 seek(Merge::beam_beam_1d, [&] { with_beams(beam, found); });
             }
@@ -51,7 +52,7 @@ class Merges {
         const Merge technique = z.on_surface() ? Merge::surface : Merge::point_point_3d;
         seek(technique, [&] { at_vertex(technique, eye, found); });
     }
-    const MergeWork& work() const { return work_; }  ///< so far
+    const TechniqueWork& work() const { return work_; }  ///< so far
 
   private:
     /// Calls merges() if the query is sampled, and counts what that takes.
@@ -139,9 +140,8 @@ class Merges {
         start_on_beam(light.beam, y);
         y.scattering.phase = on_eye_.scattering.phase;
         move_on_beam(scene_, path, light.beam, s, context_.tracking, y);
-        y.connection = light.beam.index > 1
-                           ? 1.0
-                           : light_connection(ends_, y, light.start, path.vertices[0], path.heuristic);
+        y.connection =
+            light.beam.index > 1 ? path.connection_term() : light_connection(ends_, y, light.start, path);
     }
     core::Ray query_on(const Beam& beam) const {
         core::Ray ray = beam.ray;
@@ -222,7 +222,7 @@ class Merges {
     Merge technique_{};                   ///< of this query
     std::uint32_t query_ = 0;             ///< queries so far
     std::size_t tested_ = 0, found_ = 0;  ///< by this query
-    MergeWork work_;
+    TechniqueWork work_;
 };
 
 }  // namespace mote::integrators

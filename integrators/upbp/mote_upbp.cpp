@@ -62,7 +62,7 @@ Plan MoteUpbp::plan(const Scene& scene, const Requirements& r) const {
              settings_.alpha < 1.0 ? "bias and noise of the mean both go to zero with the number of passes"
                                    : "alpha is 1: they do not shrink, and the bias stays");
     if (settings_.efforts_by_trial())
-        plan.run("efforts", "each technique's merges are sought as often as pays",
+        plan.run("efforts", "each technique is tried as often as pays",
                  "the least variance times work, by a trial");
     plan_media(plan, r);
     if (r.lights_media > 0)
@@ -101,7 +101,7 @@ void register_mote_upbp(Registry& registry) {
          row("heuristic", &S::heuristic, {{"power", Heuristic::power}, {"balance", Heuristic::balance}},
              "Weights of the techniques that find the same path."),
          row("efforts", &S::efforts, {{"automatic", Efforts::automatic}, {"equal", Efforts::equal}},
-             "How often merges are sought: automatic: each technique so often that variance times work is "
+             "How often techniques are tried: automatic: each so often that variance times work is "
              "least, by a trial; equal, or without the balance heuristic: always."),
          row("all_connections", &S::all_connections,
              "Test every connection of an eye vertex with the light path; false: one, sampled by its "

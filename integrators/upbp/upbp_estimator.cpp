@@ -42,8 +42,8 @@ class UpbpEstimator final : public Estimator {
         statistics.values["light_vertices_in_media"] += double(in_media_);
         statistics.values["light_beams"] += double(beams_);
         statistics.values["kernel_radius_surface"] = radius_;
-        constexpr std::array<const char*, merge_count> names{"surf", "pp3d", "pb2d", "bb1d"};
-        for (std::size_t t = 0; t < merge_count; ++t)
+        constexpr std::array<const char*, technique_count> names{"surf", "pp3d", "pb2d", "bb1d", "bpt"};
+        for (std::size_t t = 0; t < technique_count; ++t)
             statistics.values[std::string("effort_") + names[t]] = efforts_[t];
         if (trial_seconds_ > 0.0) statistics.seconds["effort_trial"] += trial_seconds_;
     }
@@ -51,7 +51,7 @@ class UpbpEstimator final : public Estimator {
   private:
     UpbpPasses<Media> passes_;
     ImageLoop<Media> loop_;
-    PerMerge efforts_ = full_efforts;
+    PerTechnique efforts_ = full_efforts;
     std::uint64_t on_surfaces_ = 0, in_media_ = 0, beams_ = 0;
     double radius_ = 0.0, trial_seconds_ = 0.0;
 };

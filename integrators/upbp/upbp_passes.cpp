@@ -26,11 +26,12 @@ UpbpPasses<Media>::UpbpPasses(const Scene& scene, const RenderOptions& options, 
 }
 
 template <bool Media>
-BidirectionalSettings UpbpPasses<Media>::settings_of(std::uint32_t pass, const PerMerge& efforts) const {
+BidirectionalSettings UpbpPasses<Media>::settings_of(std::uint32_t pass, const PerTechnique& efforts) const {
     BidirectionalSettings s;
     s.limits = settings_.limits, s.heuristic = settings_.heuristic;
     s.all_connections = settings_.all_connections, s.connections = settings_.connections;
-    s.merging = merges_of_pass(settings_, pass, double(scene_.bounds().radius()), lattice_.size(), Media);
+    s.merging = merges_of_pass(settings_, pass, double(scene_.bounds().radius()), lattice_.pixels(),
+                               lattice_.size(), Media);
     s.merging.light_beams = possible_length(scene_, settings_.light_beams);
     s.merging.eye_beams = possible_length(scene_, settings_.query_beams);
     s.merging.effort = efforts;

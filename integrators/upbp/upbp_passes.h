@@ -4,9 +4,9 @@
 
 #include "integrators/bidirectional/splats.h"
 #include "integrators/eye_path/counters.h"
+#include "integrators/upbp/efforts.h"
 #include "integrators/upbp/light_beams.h"
 #include "integrators/upbp/light_vertices.h"
-#include "integrators/upbp/merge_efforts.h"
 #include "integrators/upbp/merges.h"
 #include "integrators/upbp/upbp_settings.h"
 
@@ -46,17 +46,17 @@ class UpbpPasses {
                const PixelLattice& lattice);
 
     /// The settings of a pass in which techniques have these efforts.
-    BidirectionalSettings settings_of(std::uint32_t pass, const PerMerge& efforts) const;
+    BidirectionalSettings settings_of(std::uint32_t pass, const PerTechnique& efforts) const;
     /// Traces the light paths. False where the pass was cancelled. Throws OutOfMemory.
     bool trace_light_paths(const core::PassContext& context, const BidirectionalSettings& settings,
                            UpbpLights& lights);
 
     /// Traces the eye paths of pixels, which for_each_pixel(visit(x, y)) names, on the thread that calls:
-    /// found(x, y, Contribution). Returns the work of merges.
+    /// found(x, y, Contribution). Returns the work of merges and connections.
     template <typename ForEachPixel, typename Found>
-    MergeWork trace_eye_paths(const core::PassContext& context, const BidirectionalSettings& settings,
-                              const UpbpLights& lights, core::WalkContext& walk,
-                              const ForEachPixel& for_each_pixel, const Found& found) const {
+    TechniqueWork trace_eye_paths(const core::PassContext& context, const BidirectionalSettings& settings,
+                                  const UpbpLights& lights, core::WalkContext& walk,
+                                  const ForEachPixel& for_each_pixel, const Found& found) const {
         Strategies<Media> strategies(scene_, ends_, settings, lattice_.pixels(), context.filter.radius(),
                                      walk);
         Merges<Media> merges(scene_, ends_, strategies, lights.vertices, lights.beams, settings, walk);
@@ -70,7 +70,9 @@ class UpbpPasses {
                 merges.after_step(edge, continues, here);
             });
         });
-        return merges.work();
+        TechniqueWork work = merges.work();
+        work.add(strategies.connection_counts());
+        return work;
     }
     SharedCounters& counters() { return counters_; }              ///< of light paths
     const SharedCounters& counters() const { return counters_; }  ///< see above

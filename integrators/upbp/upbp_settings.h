@@ -6,7 +6,7 @@
 
 namespace mote::integrators {
 
-/// Probabilities with which merges are sought (merge_efforts.h).
+/// Probabilities with which techniques are tried (efforts.h).
 enum class Efforts : std::uint8_t {
     automatic,  ///< by a trial
     equal       ///< all are 1

@@ -77,9 +77,10 @@ RenderStatistics render(const std::string& technique, double r, double fraction,
         if (name != technique) others += fmt::format(R"(<boolean name="{}" value="false"/>)", name);
     return render_statistics(
         *scene,
-        *integrator_from(fmt::format(R"(<integrator type="mote_upbp"><string name="efforts" value="equal"/><integer name="max_depth" value="2"/>
+        *integrator_from(fmt::format(
+            R"(<integrator type="mote_upbp"><string name="efforts" value="equal"/><integer name="max_depth" value="2"/>
         <float name="alpha" value="1"/><float name="radius" value="{}"/>{}</integrator>)",
-                                     r / (unit > 0.0 ? unit : 1.0) / fraction, others)),
+            r / (unit > 0.0 ? unit : 1.0) / fraction, others)),
         {size, passes, 5});
 }
 

@@ -12,7 +12,7 @@ using namespace mote;
 using namespace mote::core;
 using namespace mote::tests;
 using integrators::Merge;
-using integrators::PerMerge;
+using integrators::PerTechnique;
 
 namespace {
 
@@ -26,7 +26,7 @@ struct Mean {
 
 /// Light in `pixels` pixels of one row, a pass after the other: visit(std::vector<double>).
 template <typename Visit>
-void for_each_pass(const Scene& scene, const integrators::UpbpSettings& settings, const PerMerge& efforts,
+void for_each_pass(const Scene& scene, const integrators::UpbpSettings& settings, const PerTechnique& efforts,
                    std::uint64_t seed, int count, int pixels, const Visit& visit,
                    bool always_sought = false) {
     const RenderOptions options{.seed = seed, .width = pixels, .height = 1};
@@ -59,7 +59,7 @@ void for_each_pass(const Scene& scene, const integrators::UpbpSettings& settings
 
 constexpr int edge = 32, passes = 1200;
 
-Mean light(const Scene& scene, const integrators::UpbpSettings& settings, const PerMerge& efforts,
+Mean light(const Scene& scene, const integrators::UpbpSettings& settings, const PerTechnique& efforts,
            std::uint64_t seed, bool always_sought = false) {
     Mean mean;
     for_each_pass(
@@ -81,44 +81,92 @@ TEST_CASE("A trial's samples give the variance at any efforts", "[upbp]") {
     integrators::Trial trial;
     // A query of two merges, and a connection with a ray of its own, in pass A; nothing in B.
     integrators::TrialPixel pixel;
-    PerMerge all{}, half{};
+    PerTechnique all{}, half{};
     all[3] = 1.0, half[3] = 0.5;
-    pixel[0] = {{.light = 1.0f, .share = all, .merge = Merge::beam_beam_1d, .query = 1},
-                {.light = 3.0f, .share = half, .merge = Merge::beam_beam_1d, .query = 1},
+    pixel[0] = {{.light = 1.0f, .share = all, .technique = 3, .query = 1},
+                {.light = 3.0f, .share = half, .technique = 3, .query = 1},
                 {.light = 2.0f, .share = half}};
-    trial.pixels = {pixel};
+    trial.pixels = {pixel}, trial.weights = {1.0};
     CHECK(integrators::variance_at(trial, integrators::full_efforts) == Approx(0.5 * 36.0));
     // At 1/4: 1 / (1/4) and 3 / (5/8), each with probability 1/2 in a query of probability 1/2; 2 / (5/8).
+    const PerTechnique seldom{1.0, 1.0, 1.0, 0.25, 1.0};
     const double query = 4.0 + 4.8, squares = 16.0 + 4.8 * 4.8, mean = 0.25 * query + 3.2;
     const double moment = 0.5 * (0.25 * query * query + 0.25 * squares);
-    CHECK(integrators::variance_at(trial, {1.0, 1.0, 1.0, 0.25}) ==
-          Approx(0.5 * (mean * mean + moment - 0.0625 * query * query)));
-    trial.pixels.clear();
-    trial.splats = {{.light = 2.0f, .share = half}};
-    CHECK(integrators::variance_at(trial, {1.0, 1.0, 1.0, 0.25}) == Approx(0.5 * 3.2 * 3.2));
+    const double expected = 0.5 * (mean * mean + moment - 0.0625 * query * query);
+    CHECK(integrators::variance_at(trial, seldom) == Approx(expected));
+    trial.weights = {3.0};
+    CHECK(integrators::variance_at(trial, seldom) == Approx(3.0 * expected));
+    trial.pixels.clear(), trial.weights = {1.0};
+    trial.splats = {{{.light = 2.0f, .share = half}, 0}};
+    CHECK(integrators::variance_at(trial, seldom) == Approx(0.5 * 3.2 * 3.2));
 }
 
-TEST_CASE("What merges do not bring is not sought", "[upbp]") {
+TEST_CASE("Connections of a vertex are tried together, and some have a ray by chance", "[upbp]") {
     integrators::Trial trial;
-    trial.work_of_paths = 1.0, trial.work_of_merges.queries = {1.0, 1.0, 0.0, 1.0};
     integrators::TrialPixel pixel;
-    PerMerge surface{}, beams{};
+    PerTechnique half{};
+    half[integrators::by_connection] = 0.5;
+    pixel[0] = {{.light = 1.0f, .share = half, .technique = integrators::by_connection, .query = 2},
+                {.light = 2.0f,
+                 .weight = 0.05f,
+                 .share = half,
+                 .technique = integrators::by_connection,
+                 .query = 2,
+                 .needs_ray = true}};
+    trial.pixels = {pixel}, trial.weights = {1.0};
+    // With an effort of 1/4 half of the density is left in 5/8: 1.6 and 3.2, which has a ray with the chance
+    // 0.05 / (5/8) / 0.25 = 0.32.
+    const PerTechnique seldom{1.0, 1.0, 1.0, 1.0, 0.25};
+    const double mean = 0.25 * 4.8, moment = 0.25 * (4.8 * 4.8 + 3.2 * 3.2 * (1.0 / 0.32 - 1.0));
+    CHECK(integrators::variance_at(trial, seldom) == Approx(0.5 * (mean * mean + moment - mean * mean)));
+}
+
+TEST_CASE("Variances count by the light of their surroundings, and without outliers", "[upbp]") {
+    integrators::Trial trial;
+    const auto lit = [](float light) {
+        integrators::TrialPixel pixel;
+        pixel[0] = {{.light = light}}, pixel[1] = {{.light = light}};
+        return pixel;
+    };
+    trial.pixels.assign(64, lit(2.0f));  // a block of 64 pixels, a dark one, and one with a bright pixel
+    trial.pixels.insert(trial.pixels.end(), 64, lit(0.0f));
+    trial.pixels.insert(trial.pixels.end(), 64, lit(2.0f));
+    trial.pixels[140] = lit(1e6f);
+    integrators::set_weights_by_light(trial);
+    REQUIRE(trial.weights.size() == 192);
+    for (const int i : {0, 63, 128, 140, 191}) CHECK(trial.weights[std::size_t(i)] == Approx(1.0 / 4.04));
+    CHECK(trial.weights[100] == Approx(1.0 / 0.04));
+    trial.pixels[0][0] = {{.light = 4.0f}}, trial.pixels[140][0] = {{.light = 0.0f}};
+    CHECK(integrators::variance_at(trial, integrators::full_efforts) > 1e11);
+    CHECK(integrators::variance_at(trial, integrators::full_efforts, 0.01) == Approx(0.5 * 4.0 / 4.04));
+}
+
+TEST_CASE("What a technique does not bring is not sought", "[upbp]") {
+    integrators::Trial trial;
+    trial.work_of_paths = 1.0, trial.work.queries = {1.0, 1.0, 0.0, 1.0}, trial.work.finds[4] = 1.0;
+    integrators::TrialPixel pixel;
+    PerTechnique surface{}, beams{};
     surface[0] = 0.999, beams[3] = 0.5;
-    pixel[0] = {{.light = 1.0f, .share = surface, .merge = Merge::surface}, {.light = 1e-6f, .share = beams}};
-    trial.pixels = {pixel};
-    CHECK(integrators::efficient_efforts(trial) == PerMerge{1.0, 1.0 / 64.0, 1.0, 1.0 / 64.0});
-    CHECK(integrators::efficient_efforts({}) == integrators::full_efforts);
+    pixel[0] = {{.light = 1.0f, .share = surface, .technique = 0}, {.light = 1e-6f, .share = beams}};
+    trial.pixels = {pixel}, trial.weights = {1.0};
+    CHECK(integrators::efficient_efforts(trial) ==
+          PerTechnique{1.0, 1.0 / 64.0, 1.0, 1.0 / 64.0, 1.0 / 64.0});
+    integrators::Trial nothing;
+    nothing.weights = {1.0};
+    CHECK(integrators::efficient_efforts(nothing) == integrators::full_efforts);
 }
 
 TEST_CASE("A trial predicts the variance of a pass", "[upbp][statistics]") {
     const auto scene = scene_from(box(grey, fog("0.6, 0.9, 1.2", "")), edge);
     integrators::UpbpSettings settings;
     settings.radius = 0.15, settings.limits.max_depth = 4, settings.all_connections = true;
-    for (const PerMerge& efforts : {integrators::full_efforts, PerMerge{0.25, 0.0625, 0.25, 0.0625}}) {
+    for (const PerTechnique& efforts :
+         {integrators::full_efforts, PerTechnique{0.25, 0.0625, 0.25, 0.0625, 0.25}}) {
         Mean predicted, planted;
         for (std::uint64_t seed = 0; seed < 16; ++seed) {
             const RenderOptions options{.seed = seed, .width = edge, .height = 1};
             integrators::Trial trial = integrators::trial_of_efforts<true>(*scene, options, settings);
+            trial.weights.assign(trial.weights.size(), 1.0);
             predicted.add(integrators::variance_at(trial, efforts));
             for (auto& pixel : trial.pixels)  // shares forgotten
                 for (auto& samples : pixel)
@@ -144,7 +192,7 @@ TEST_CASE("A trial predicts the variance of a pass", "[upbp][statistics]") {
     }
 }
 
-TEST_CASE("Efforts of merges change no mean", "[upbp][statistics]") {
+TEST_CASE("Efforts change no mean", "[upbp][statistics]") {
     const auto scene = scene_from(box(grey, fog("0.6, 0.9, 1.2", "")), edge);
     integrators::UpbpSettings settings;
     settings.radius = 0.15;  // light and eye paths meet in every pass
@@ -152,11 +200,11 @@ TEST_CASE("Efforts of merges change no mean", "[upbp][statistics]") {
     const auto check = [&](const char* what) {
         INFO(what);
         const Mean full = light(*scene, settings, integrators::full_efforts, 1);
-        const PerMerge efforts{0.3, 0.2, 0.1, 0.25};
+        const PerTechnique efforts{0.3, 0.2, 0.1, 0.25, 0.15};
         const Mean seldom = light(*scene, settings, efforts, 2);
         INFO(full.value() << " and " << seldom.value() << ", z " << z(full, seldom));
         CHECK(std::fabs(z(full, seldom)) < 3.5);
-        // Planted: merges are always sought, but weighted as if they were not.
+        // Planted: all is always sought, but weighted as if it were not.
         const Mean forgotten = light(*scene, settings, efforts, 2, true);
         INFO(forgotten.value() << " where that is forgotten, z " << z(full, forgotten));
         CHECK(std::fabs(z(full, forgotten)) > 3.5);
@@ -173,6 +221,9 @@ TEST_CASE("Efforts of merges change no mean", "[upbp][statistics]") {
     // 0.04 less than 1 %, and without a radius both means are 0.760 (20000 passes).
     settings.radius = 0.04;
     check("connections too");
+    settings.surface = settings.point_point = settings.point_beam = settings.beam_beam = false;
+    settings.heuristic = integrators::Heuristic::none;
+    check("connections alone, each in full");
 }
 
 TEST_CASE("Crowded kernels are sought less often", "[upbp]") {
@@ -180,7 +231,7 @@ TEST_CASE("Crowded kernels are sought less often", "[upbp]") {
     const RenderOptions options{.seed = 1, .width = 32, .height = 32};
     integrators::UpbpSettings settings;
     settings.radius = 0.5;
-    const PerMerge efforts =
+    const PerTechnique efforts =
         integrators::efficient_efforts(integrators::trial_of_efforts<true>(*scene, options, settings));
     for (const double effort : efforts) CHECK((effort >= 1.0 / 64.0 && effort <= 1.0));
     CHECK((efforts[2] <= 0.25 && efforts[3] <= 0.25));

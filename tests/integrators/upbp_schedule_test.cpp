@@ -22,7 +22,7 @@ double measure(const MergeSettings& m, std::size_t technique) {
 TEST_CASE("kernels shrink by their dimension", "[upbp][schedule]") {
     UpbpSettings settings;
     settings.radius = 0.02, settings.alpha = 0.6;
-    const MergeSettings first = merges_of_pass(settings, 0, 5.0, 100, true);
+    const MergeSettings first = merges_of_pass(settings, 0, 5.0, 100, 100, true);
     for (std::size_t t = 0; t < merge_count; ++t) {
         INFO("technique " << t);
         CHECK(first.radius[t] == Approx(0.1));
@@ -30,16 +30,24 @@ TEST_CASE("kernels shrink by their dimension", "[upbp][schedule]") {
         double expected = 1.0;
         for (std::uint32_t pass = 1; pass <= 40; ++pass) {
             expected *= (pass + settings.alpha) / (pass + 1.0);
-            const MergeSettings now = merges_of_pass(settings, pass, 5.0, 100, true);
+            const MergeSettings now = merges_of_pass(settings, pass, 5.0, 100, 100, true);
             CHECK(measure(now, t) / measure(first, t) == Approx(expected).epsilon(1e-9));
         }
         // A query then finds as many of a million light paths as of ten thousand; of beams, as of a hundred.
-        const MergeSettings many = merges_of_pass(settings, 0, 5.0, 1000000, true);
+        const MergeSettings many = merges_of_pass(settings, 0, 5.0, 1000000, 1000000, true);
         const double paths = dimensions[t] == 1 ? 500.0 : 1e6, few = dimensions[t] == 1 ? 100.0 : 1e4;
         CHECK(many.light_subpaths[t] == paths);
         CHECK(measure(many, t) * paths == Approx(measure(first, t) * few).epsilon(1e-9));
     }
-    const MergeSettings nothing = merges_of_pass(settings, 0, 5.0, 100, false);
+    // A trial's larger kernels find as many of its fewer light paths.
+    const MergeSettings picture = merges_of_pass(settings, 3, 5.0, 64000, 64000, true);
+    const MergeSettings trial = merges_of_pass(settings, 3, 5.0, 64000, 8000, true);
+    for (std::size_t t = 0; t < merge_count; ++t) {
+        CHECK(trial.light_subpaths[t] == (dimensions[t] == 1 ? 500.0 : 8000.0));
+        CHECK(measure(trial, t) * trial.light_subpaths[t] ==
+              Approx(measure(picture, t) * picture.light_subpaths[t]).epsilon(1e-9));
+    }
+    const MergeSettings nothing = merges_of_pass(settings, 0, 5.0, 100, 100, false);
     for (std::size_t t = 0; t < merge_count; ++t) CHECK(nothing.uses(Merge(t)) == (t == 0));
-    CHECK(merges_of_pass(settings, 0, 0.0, 100, true).radius[0] == Approx(0.02));
+    CHECK(merges_of_pass(settings, 0, 0.0, 100, 100, true).radius[0] == Approx(0.02));
 }
