@@ -104,8 +104,7 @@ std::optional<std::pair<Contribution, Vec2>> Strategies<Media>::join_to_lens(std
                              (parallel ? 1.0 : double(lens->distance) * double(lens->distance));
     const double before = reverse_of_previous(light_, s - 1, lens->wi, TransportMode::power);
     // In terms of one light path: this technique has all of them.
-    const double own =
-        settings_.heuristic == Heuristic::none ? 1.0 : mis_term(settings_.heuristic, light_paths_);
+    const double own = own_term(light_paths_);
     const auto weight_with = [&](double edge) {
         return connection_weight(own, light_.others(s - 1, by_camera * edge, before, edge, lens->wi), 0.0);
     };
@@ -181,7 +180,7 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     const double by_light = start.of(v.geometric_cosine(light->wi), d2, infinite);
     const double before = reverse_of_previous(eye_, t - 1, light->wi, TransportMode::radiance);
     const auto weight_with = [&](double edge) {
-        return connection_weight(own_term(), mis_term(settings_.heuristic, to_light * edge / sampled),
+        return connection_weight(own_term(effort()), mis_term(settings_.heuristic, to_light * edge / sampled),
                                  mis_term(settings_.heuristic, start.light / sampled) *
                                      eye_.others(t - 1, by_light * edge, before, edge, light->wi)) /
                effort();
@@ -226,7 +225,7 @@ bool Strategies<Media>::prepare(std::size_t s, std::size_t t, Connection& c) con
 template <bool Media>
 double Strategies<Media>::weight_of(const Connection& c, std::size_t t, double edge) const {
     if (settings_.heuristic == Heuristic::none) return 1.0 / effort();
-    return connection_weight(own_term(),
+    return connection_weight(own_term(effort()),
                              light_.others(c.s - 1, c.to_light * edge, c.before_light, edge, c.wi),
                              eye_.others(t - 1, c.to_eye * edge, c.before_eye, edge, c.wi)) /
            effort();

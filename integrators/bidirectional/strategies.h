@@ -25,7 +25,7 @@ struct Contribution {
     core::Rgb light{0.0f};
     Transport layer{};
     int s = 0, t = 0;
-    float weight = 0.0f;  ///< of multiple importance sampling, in `light`; over the effort of its technique
+    float weight = 0.0f;  ///< of multiple importance sampling, in `light`; of connections over their effort
     std::optional<Merge> merge{};  ///< the technique that found it, with s = t = 0; none: (s, t)
     std::uint32_t query = 0;       ///< merges of one query of an eye path are sought together
 };
@@ -142,8 +142,10 @@ class Strategies {
     /// chance_of_ray(), by the weight with a guess of the edge's tau; 0: not this time. An effort is no
     /// reason against the ray: it was won already.
     float worth_a_ray(double weight);
-    /// PathVertex::connection of a connection; 1 where every technique counts in full.
-    double own_term() const { return settings_.heuristic == Heuristic::none ? 1.0 : eye_.connection_term(); }
+    /// h of what a technique's own density has beyond the vertices'; 1 where every technique counts in full.
+    double own_term(double ratio) const {
+        return settings_.heuristic == Heuristic::none ? 1.0 : mis_term(settings_.heuristic, ratio);
+    }
     double effort() const { return settings_.merging.effort[by_connection]; }
     template <typename Found>
     void connect_eye_vertex(std::size_t t, float u_light, const core::Vec2& u, const Found& found);

@@ -120,6 +120,7 @@ void SubpathWalk<Media>::append(const WalkEvent& event, const MediumState& start
         const Vec3d d = Vec3d(vertex.scattering.position) - Vec3d(previous.scattering.position);
         vertex.distance_squared = std::max(glm::dot(d, d), 1e-40);
     }
+    MediumCoefficients here;
     if constexpr (Media) {
         // From this end, or, of light from infinity, from the other: there an edge has one end only.
         Ray edge = ray_;
@@ -132,14 +133,12 @@ void SubpathWalk<Media>::append(const WalkEvent& event, const MediumState& start
             edge.t_max = event.distance;
         vertex.edge = edge_transmittance(scene_, edge, from_infinity ? state_ : start, context_.tracking);
         if (const Medium* medium = state_.current(); medium && !vertex.infinite)
-            vertex.sigma_here = double(average(medium->coefficients(vertex.scattering.position).sigma_t));
+            here = medium->coefficients(vertex.scattering.position);
+        vertex.sigma_here = double(average(here.sigma_t));
     }
     vertex.density = density_ * vertex.area_measure(ray_.direction, vertex.distance_squared) * vertex.edge;
     if (path_.merging.any() && !vertex.infinite)
-        set_merges(
-            path_,
-            event.medium ? event.medium->coefficients(vertex.scattering.position) : MediumCoefficients{},
-            vertex);
+        set_merges(path_, event.medium ? here : MediumCoefficients{}, vertex);
     if (k >= 2)
         vertex.others =
             path_.others_before(k, density_of_previous(path_, k - 1, ray_.direction, mode_, previous.delta));

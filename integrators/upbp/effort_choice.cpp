@@ -76,12 +76,12 @@ void set_weights_by_light(Trial& trial) {
     for (std::size_t p = 0; p < light.size(); ++p)
         light[p] /= 2.0 * trial.pairs * double(std::min(n, (p + 1) * part) - p * part);
     const double least = 0.1 * median(light);
-    trial.weights.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t first = i / (part * parts) * parts, last = std::min(first + parts, light.size());
+    trial.weights.clear();
+    for (std::size_t first = 0; first < light.size(); first += parts) {
+        const std::size_t last = std::min(first + parts, light.size());
         const double here =
             median({light.begin() + std::ptrdiff_t(first), light.begin() + std::ptrdiff_t(last)});
-        trial.weights[i] = 1.0 / std::max(here * here + least * least, 1e-30);
+        trial.weights.resize(std::min(n, last * part), 1.0 / std::max(here * here + least * least, 1e-30));
     }
 }
 

@@ -139,12 +139,13 @@ class EffortTrial {
         trace_eye_paths(context, settings, lights, unused, [&](std::size_t i, const Contribution& c) {
             std::vector<TrialSample>& samples = trial_.pixels[first_pixel + i][half];
             if (!halved) samples.emplace_back();
+            const auto technique = technique_of(c);
             take(samples.at(taken[i]++),
                  {.light = average(c.light),
                   .weight = c.weight,
-                  .technique = technique_of(c),
+                  .technique = technique,
                   .query = c.merge ? c.query : std::uint32_t(c.t),
-                  .needs_ray = by_chance_ && !c.merge && c.s > 0},
+                  .needs_ray = by_chance_ && technique == by_connection},
                  halved);
         });
     }
@@ -156,10 +157,7 @@ class EffortTrial {
                 std::clamp(2.0 * (1.0 - double(sample.light) / double(found.light)), 0.0, 1.0);
     }
     std::size_t pixel_of(const Splat& splat) const {
-        const auto cell = [&](float x, int cells) { return std::clamp(int(x) / lattice_.n, 0, cells - 1); };
-        const auto index =
-            std::size_t(cell(splat.film.y, lattice_.rows())) * std::size_t(lattice_.columns()) +
-            std::size_t(cell(splat.film.x, lattice_.columns()));
+        const std::size_t index = lattice_.index_of(int(splat.film.x), int(splat.film.y));
         return std::min(index / step_, pixels_ - 1);
     }
     static std::optional<std::size_t> technique_of(const Contribution& c) {
