@@ -38,15 +38,22 @@ float margin_at(const SurfaceHit& hit, const Ray& ray) {
     return 4e-7f * (hit.t + max_component(glm::abs(hit.position))) / std::max(cosine, 1e-3f);
 }
 
-/// A collision so near to what lies before or behind it (or null) that its position, once rounded, could be
-/// on the other side is moved off it: the path would continue in a medium that it is not in, and never leave
-/// it.
-float kept_between(const SurfaceHit* before, float t, const SurfaceHit* behind, const Ray& ray) {
-    const float near = before ? before->t + margin_at(*before, ray) : ray.t_min;
-    const float far = behind ? behind->t - margin_at(*behind, ray) : infinity;
-    if (near <= far) return std::clamp(t, near, far);
-    return 0.5f * ((before ? before->t : ray.t_min) + behind->t);
-}
+/// Surfaces at the ends of a segment, or null.
+struct Ends {
+    const SurfaceHit *before, *behind;
+};
+
+/// Distances between which a collision is kept. One so near to an end of the segment that its position, once
+/// rounded, could be on the other side is moved off it: the path would continue in a medium that it is not
+/// in, and never leave it.
+struct KeptBetween {
+    float first, last;
+    KeptBetween(const Ends& ends, const Ray& ray)
+        : first(ends.before ? ends.before->t + margin_at(*ends.before, ray) : ray.t_min),
+          last(ends.behind ? ends.behind->t - margin_at(*ends.behind, ray) : infinity) {
+        if (first > last) first = last = 0.5f * ((ends.before ? ends.before->t : ray.t_min) + ends.behind->t);
+    }
+};
 
 WalkEvent collision_at(float t, const Medium* medium, float surface_distance) {
     WalkEvent event;
@@ -55,9 +62,9 @@ WalkEvent collision_at(float t, const Medium* medium, float surface_distance) {
     return event;
 }
 
-/// `cross(t0, t1)` goes through a segment of one medium and returns the distance of a collision, if any.
-/// `event` is the first surface on the ray, or none; what the path meets before takes its place. `splits`: a
-/// segment may be crossed in two parts.
+/// `cross(t0, t1, Ends)` goes through a segment of one medium and returns the distance of a collision, if
+/// any. `event` is the first surface on the ray, or none; what the path meets before takes its place.
+/// `splits`: a segment may be crossed in two parts.
 template <bool Media, bool splits, typename Cross>
 void follow(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
             WalkEvent& event, WalkContext& context, const Cross& cross) {
@@ -67,9 +74,8 @@ void follow(const RayQueries& scene, const Ray& ray, MediumState& state, PathWei
     event.distance = hit ? t_end : infinity, event.surface_distance = t_end;
     if (!(Media ? scene.has_boundaries() : scene.has_panes())) {
         if constexpr (Media)
-            if (const auto c = cross(t, t_end))
-                event = collision_at(kept_between(nullptr, *c, hit ? &event.hit : nullptr, ray),
-                                     state.current(), t_end);
+            if (const auto c = cross(t, t_end, Ends{nullptr, hit ? &event.hit : nullptr}))
+                event = collision_at(*c, state.current(), t_end);
         return;
     }
     // In open space a path ends or collides as a rule, before it can meet a boundary.
@@ -79,9 +85,9 @@ void follow(const RayQueries& scene, const Ray& ray, MediumState& state, PathWei
     context.boundary_hits.clear();
     if (ends || (splits && !context.all_boundaries && t_open > t)) {
         if constexpr (Media)
-            if (const auto c = cross(t, ends ? t_end : t_open)) {
-                event = collision_at(kept_between(nullptr, *c, ends && hit ? &event.hit : nullptr, ray),
-                                     state.current(), t_end);
+            if (const auto c =
+                    cross(t, ends ? t_end : t_open, Ends{nullptr, ends && hit ? &event.hit : nullptr})) {
+                event = collision_at(*c, state.current(), t_end);
                 return;
             }
         if (ends) return;
@@ -94,8 +100,8 @@ void follow(const RayQueries& scene, const Ray& ray, MediumState& state, PathWei
     [[maybe_unused]] const SurfaceHit* before = nullptr;  // the boundary at t
     for (const SurfaceHit& boundary : context.boundary_hits) {
         if constexpr (Media)
-            if (const auto c = cross(t, boundary.t)) {
-                event = collision_at(kept_between(before, *c, &boundary, ray), state.current(), t_end);
+            if (const auto c = cross(t, boundary.t, Ends{before, &boundary})) {
+                event = collision_at(*c, state.current(), t_end);
                 return;
             }
         if (is_pane(boundary))
@@ -108,9 +114,8 @@ void follow(const RayQueries& scene, const Ray& ray, MediumState& state, PathWei
         t = boundary.t, before = &boundary;
     }
     if constexpr (Media)
-        if (const auto c = cross(t, t_end))
-            event = collision_at(kept_between(before, *c, hit ? &event.hit : nullptr, ray), state.current(),
-                                 t_end);
+        if (const auto c = cross(t, t_end, Ends{before, hit ? &event.hit : nullptr}))
+            event = collision_at(*c, state.current(), t_end);
 }
 
 /// The first surface on the ray, and nothing yet of what lies before it.
@@ -127,9 +132,13 @@ WalkEvent first_surface(const RayQueries& scene, const Ray& ray, WalkContext& co
 template <bool Media>
 void walk_before(const RayQueries& scene, const Ray& ray, WalkEvent& event, MediumState& state,
                  PathWeights& weights, Rgb& emitted, WalkContext& context) {
-    follow<Media, true>(scene, ray, state, weights, event, context, [&](float t0, float t1) {
-        return cross_segment(state, ray, t0, t1, weights, emitted, context);
-    });
+    follow<Media, true>(scene, ray, state, weights, event, context,
+                        [&](float t0, float t1, const Ends& ends) -> std::optional<float> {
+                            const auto t = cross_segment(state, ray, t0, t1, weights, emitted, context);
+                            if (!t) return std::nullopt;
+                            const KeptBetween kept(ends, ray);
+                            return std::clamp(*t, kept.first, kept.last);
+                        });
 }
 
 template <bool Media>
@@ -140,18 +149,25 @@ WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, Path
     return event;
 }
 
-WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
-                          Rgb& emitted, ScatteringPoints& points, WalkContext& context) {
-    WalkEvent event = first_surface(scene, ray, context);
+void walk_to_surface_before(const RayQueries& scene, const Ray& ray, WalkEvent& event, MediumState& state,
+                            PathWeights& weights, Rgb& emitted, ScatteringPoints& points,
+                            WalkContext& context) {
     follow<true, false>(scene, ray, state, weights, event, context,
-                        [&](float t0, float t1) -> std::optional<float> {
+                        [&](float t0, float t1, const Ends& ends) -> std::optional<float> {
                             if (const Medium* medium = state.current(); medium && t0 < t1) {
-                                points.begin_part(state);
+                                const KeptBetween kept(ends, ray);
+                                points.begin_part(state, kept.first, kept.last);
                                 medium->scatter_along({ray.origin, ray.direction, t0, t1}, weights, emitted,
                                                       points, context.rng, context.tracking);
                             }
                             return std::nullopt;
                         });
+}
+
+WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
+                          Rgb& emitted, ScatteringPoints& points, WalkContext& context) {
+    WalkEvent event = first_surface(scene, ray, context);
+    walk_to_surface_before(scene, ray, event, state, weights, emitted, points, context);
     return event;
 }
 

@@ -57,6 +57,10 @@ void walk_before(const RayQueries& scene, const Ray& ray, WalkEvent& event, Medi
 /// at `points` and let the rest through (Medium::scatter_along). For paths whose `weights.light` is black.
 WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
                           Rgb& emitted, ScatteringPoints& points, WalkContext& context);
+/// Once the first surface on the ray is known, as in walk_before().
+void walk_to_surface_before(const RayQueries& scene, const Ray& ray, WalkEvent& event, MediumState& state,
+                            PathWeights& weights, Rgb& emitted, ScatteringPoints& points,
+                            WalkContext& context);
 
 extern template WalkEvent walk<true>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&,
                                      WalkContext&);

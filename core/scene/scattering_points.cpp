@@ -9,7 +9,15 @@ void ScatteringPoints::start(const Rng& rng) {
     parts_.clear(), candidates_.clear(), chosen_.clear();
 }
 
-void ScatteringPoints::begin_part(const MediumState& state) { parts_.push_back(state); }
+void ScatteringPoints::begin_part(const MediumState& state, float first, float last) {
+    parts_.push_back({state, first, last});
+}
+
+float ScatteringPoints::distance_of(const ScatteringPoint& point, const Ray& ray) const {
+    const Part& part = parts_[point.part];
+    const float t = glm::dot(point.position - ray.origin, ray.direction);
+    return t < ray.t_min ? t : std::clamp(t, part.first, part.last);  // before: on an earlier ray
+}
 
 void ScatteringPoints::add(const Vec3& position, const Rgb& weight) {
     if (count_ == 0 || !(max_component(weight) > 0.0f)) return;

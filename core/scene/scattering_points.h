@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/math/random.h"
+#include "core/math/ray.h"
 #include "core/scene/medium_state.h"
 
 namespace mote::core {
@@ -34,8 +35,8 @@ class ScatteringPoints {
 
     /// Begins a ray; `rng` is sampled from where there are too many candidates to keep, and in choose().
     void start(const Rng& rng);
-    /// Candidates from now on lie in the medium of `state`.
-    void begin_part(const MediumState& state);
+    /// Candidates from now on lie in the medium of `state`; distance_of() is between these.
+    void begin_part(const MediumState& state, float first = 0.0f, float last = infinity);
     /// A candidate. Weights are per channel, not negative.
     void add(const Vec3& position, const Rgb& weight);
 
@@ -43,17 +44,28 @@ class ScatteringPoints {
     /// weights; none where there are no candidates. Where the sum of all weights is below `rare`, a point is
     /// left out (black) with the chance that keeps the others at the weight of a sum of `rare`.
     std::span<const ScatteringPoint> choose(float rare);
-    const MediumState& state_of(const ScatteringPoint& point) const { return parts_[point.part]; }
+    const MediumState& state_of(const ScatteringPoint& point) const { return parts_[point.part].state; }
+
+    /// All candidates kept so far, for a choice of another kind.
+    static constexpr std::size_t max_candidates = 512;
+    std::span<const ScatteringPoint> kept() const { return candidates_; }
+    /// Distance of a candidate along the ray, at which a path may scatter.
+    float distance_of(const ScatteringPoint& point, const Ray& ray) const;
 
   private:
     /// Samples `count` of `from` in order into `to`; returns the sum of the weights.
     double sample(const std::vector<ScatteringPoint>& from, std::size_t count,
                   std::vector<ScatteringPoint>& to);
 
-    static constexpr std::size_t max_candidates = 512;
+    /// A part of the ray in one medium.
+    struct Part {
+        MediumState state;
+        float first, last;  ///< [m]
+    };
+
     int count_;
     Rng rng_;
-    std::vector<MediumState> parts_;
+    std::vector<Part> parts_;
     std::vector<ScatteringPoint> candidates_, chosen_;
 };
 

@@ -60,6 +60,7 @@ class Mote:
         self.program = options.bin / "mote"
         self.folder = options.output / name
         self.redraw, self.own, self.compare = options.redraw, options.own, options.compare
+        self.pilots = {}  # processor seconds of one and of three passes, by name
         measure.use(options.bin)
         self.module = measure.module() if options.in_process else None
         if not self.program.is_file():
@@ -83,6 +84,16 @@ class Mote:
             print(f"{path.stem}: differs by {metrics['error']:.2%} from the one without {self.own.suffix()[1:]}, "
                   f"in the mean by {metrics['bias']:+.2%}")
         return picture
+
+    def render_for(self, seconds, scene, name, settings, seed=1, pilot=""):
+        """As many passes as take so many processor seconds on one thread, two at the least, by renders of one and of three passes;
+        those of the same `pilot` (else `name`) are measured once."""
+        pilot = pilot or name
+        if pilot not in self.pilots:
+            self.pilots[pilot] = [self.render(scene, f"{pilot}_{word}", settings, passes, threads=1).cpu
+                                  for word, passes in (("one", 1), ("three", 3))]
+        one, three = self.pilots[pilot]
+        return self.render(scene, name, settings, max(2, round((seconds - one) / max((three - one) / 2, 1e-3))), seed, threads=1)
 
     def rendered(self, scene, name, settings, passes, seed, threads, auxiliary):
         """The file of a picture, with its statistics and its processor seconds beside it."""

@@ -1,59 +1,32 @@
 #!/usr/bin/python3
-"""Guided paths against unguided ones: variance times time, training included.
+"""Guided paths against unguided ones at equal processor time, training included, in six scenes.
 
-Usage: guiding.py [--mote build/release/bin/mote] [--seconds 120] [--seeds 4] [--size 320x200] [--scenes NAME,...]
-                  [--guiding on|automatic] [--threads N] [--set NAME=VALUE ...] [--quick]
-Every scene is rendered for the same time with `guiding` off and on (--set adds settings of the guided renders), with
-several seeds. The variance is that between seeds, relative and weighted as the error of docs/testing.md, Eq. 1, with the mean
-of 9 x 9 pixels in the weight: a bright path in a pixel's own mean would hide the variance that it makes. `trimmed` leaves
-out the hundredth of pixels with most of it, where a bright path decides. A gain above 1: guiding pays. The last
-columns are the share of the time that training took, and of the renders that were guided. Run it on an idle machine.
+`volpath` renders 320 x 200 pixels on one thread for 30 and 120 s, with `guiding` off and automatic, two seeds each. The error is
+the root of the variance between seeds, relative and weighted as that of docs/testing.md, Eq. 1, with the mean of 9 x 9 pixels in
+the weight: a bright path in a pixel's own mean would hide the variance that it makes. `trimmed` leaves out the hundredth of pixels
+with most of it, where a bright path decides. The gain is the quotient of both variances times seconds, after 120 s; above 1, guiding
+pays. mote_study_guiding_field draws what was learned in the smoke room. `--quick`: tiny pictures, numbers without a meaning.
 """
-import argparse
-import json
+import csv
+import math
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "experiments/figures"))
+import plotting
 from exr import read_exr
+from origin import table_of
+from renders import main, write_csv
 
-FIGURES = "experiments/figures/scenes"
-SCENES = {"smoke_room": "scenes/smoke_room.xml", "atrium": "scenes/atrium.xml", "fog": f"{FIGURES}/glass_in_fog.xml",
-          "fog_grille": "scenes/fog_grille.xml", "city": "scenes/city.xml", "door_ajar": f"{FIGURES}/door_ajar.xml",
-          "lamp_shade": f"{FIGURES}/lamp_shade.xml", "cornell_box": "scenes/cornell_box.xml",
-          "cloud": "scenes/cloud.xml", "bunny_room": f"{FIGURES}/bunny_room.xml"}
-
-
-def render(args, scene, seed, settings, folder):
-    """The picture, and its seconds."""
-    exr, stats = folder / "p.exr", folder / "p.json"
-    width, height = args.size.split("x")
-    defined = [f"resx={width}", f"resy={height}", *settings]
-    stop = ["--passes", args.passes] if args.passes else ["--time", args.seconds]
-    threads = ["--threads", args.threads] if args.threads else []
-    subprocess.run([args.mote, "render", ROOT / SCENES[scene], "--integrator", "volpath", "--quiet", "--seed", seed, *threads,
-                    *(word for d in defined for word in ("-D", d)), *stop, "-o", exr, "--stats", stats],
-                   check=True)
-    return read_exr(exr)[""], json.loads(stats.read_text())
-
-
-def measure(args, scene, settings, folder):
-    """Pictures, mean seconds of one, mean passes, the share of time that training took, and of guided renders."""
-    pictures, seconds, passes, training, guided = [], [], [], [], []
-    for seed in range(1, args.seeds + 1):
-        picture, stats = render(args, scene, str(seed), settings, folder)
-        taken = stats["seconds"]
-        pictures.append(picture)
-        seconds.append(taken["build"] + taken["render"])
-        passes.append(stats["passes"])
-        training.append(taken.get("guiding", 0.0) / seconds[-1])
-        guided.append(stats["values"].get("guided", 0.0))
-    return np.stack(pictures), np.mean(seconds), np.mean(passes), np.mean(training), np.mean(guided)
+FIGURES = ROOT / "experiments/figures/scenes"
+SCENES = {"smoke room": ROOT / "scenes/smoke_room.xml", "atrium": ROOT / "scenes/atrium.xml", "fog": FIGURES / "glass_in_fog.xml",
+          "city": ROOT / "scenes/city.xml", "door ajar": FIGURES / "door_ajar.xml", "lamp under a shade": FIGURES / "lamp_shade.xml"}
+METHODS = {"volpath": "off", "volpath guided": "automatic"}
+POINT = (2.3, 1.2, 2.0)  # in the smoke room's medium: what has been learned there is shown
 
 
 def smoothed(picture, reach=4):
@@ -63,7 +36,7 @@ def smoothed(picture, reach=4):
 
 
 def variance(pictures, mean):
-    """Relative variance of one picture (docs/testing.md, Eq. 1): all pixels, and without the hundredth with most of it."""
+    """Relative variance of one picture: all pixels, and without the hundredth with most of it."""
     squares, noise = (smoothed(mean) ** 2).mean(axis=2), pictures.var(axis=0, ddof=1).mean(axis=2)
     median = np.median(np.sqrt(squares[squares > 0.0]))
     weight = 1.0 / (squares + (median / 10.0) ** 2)
@@ -72,33 +45,88 @@ def variance(pictures, mean):
     return terms.sum() / whole, terms[: len(terms) - len(terms) // 100].sum() / whole
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--mote", default=ROOT / "build/release/bin/mote")
-    parser.add_argument("--seconds", default="120")
-    parser.add_argument("--passes", help="instead of a time: variance and time are then multiplied")
-    parser.add_argument("--seeds", type=int, default=4)
-    parser.add_argument("--size", default="320x200")
-    parser.add_argument("--scenes", default="smoke_room,atrium,fog,city,door_ajar,lamp_shade")
-    parser.add_argument("--guiding", default="on", choices=["on", "automatic"])
-    parser.add_argument("--threads")
-    parser.add_argument("--set", nargs="*", default=[], help="settings of the guided renders: guiding_passes=63")
-    parser.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
-    args = parser.parse_args()
-    if args.quick:
-        args.passes, args.seeds, args.size, args.scenes = "2", 2, "16x10", "cornell_box,door_ajar"
-        args.set = ["guiding_passes=3", "guiding_paths=256"]
-    print("scene: variance off, on; gain in variance (trimmed); in variance x seconds (trimmed); passes off, on; training; guided")
-    with tempfile.TemporaryDirectory() as folder:
-        for scene in args.scenes.split(","):
-            guided = [f"integrator.guiding={args.guiding}", *(f"integrator.{s}" for s in args.set)]
-            runs = [measure(args, scene, settings, Path(folder)) for settings in (["integrator.guiding=off"], guided)]
-            mean = np.concatenate([r[0] for r in runs]).mean(axis=0)
-            off, on = (np.array(variance(r[0], mean)) for r in runs)
-            gain, timed = off / on, off * runs[0][1] / (on * runs[1][1])
-            print(f"{scene}: {off[0]:.4g}, {on[0]:.4g}; {gain[0]:.2f} ({gain[1]:.2f}); {timed[0]:.2f} ({timed[1]:.2f}); "
-                  f"{runs[0][2]:.0f}, {runs[1][2]:.0f}; {100 * runs[1][3]:.0f} %; {100 * runs[1][4]:.0f} %", flush=True)
+def study(mote, scene, quick):
+    """Rows of the table."""
+    size = {"film.width": 24 if quick else 320, "film.height": 16 if quick else 200, "integrator": "volpath"}
+    runs = {}
+    for method, guiding in METHODS.items():
+        settings = size | {"integrator.guiding": guiding} | ({"integrator.guiding_paths": 256} if quick else {})
+        for seconds in (0.2, 0.5) if quick else (30, 120):
+            tag = f"{scene} {method}".replace(" ", "_")
+            runs[method, seconds] = [mote.render_for(seconds, SCENES[scene], f"{tag}_{seconds}", settings, seed, pilot=tag)
+                                     for seed in (1, 2)]
+    longest = max(seconds for _, seconds in runs)
+    mean = np.mean([p[""] for (_, seconds), pictures in runs.items() if seconds == longest for p in pictures], axis=0)
+    rows = []
+    for (method, seconds), pictures in runs.items():
+        values = variance(np.stack([p[""] for p in pictures]), mean)
+        statistics = [p.statistics for p in pictures]
+        average = lambda of: float(np.mean([of(s) for s in statistics]))
+        rows.append([scene, method, seconds, float(np.mean([p.cpu for p in pictures])), average(lambda s: s["passes"]),
+                     average(lambda s: s["seconds"].get("guiding", 0.0)), average(lambda s: s["values"].get("guided", 0.0)),
+                     average(lambda s: s["values"].get("guided_vertices", 0.0)), *map(math.sqrt, values)])
+    return rows
+
+
+def say(rows):
+    for scene in dict.fromkeys(row[0] for row in rows):
+        of = {row[1]: row for row in rows if row[0] == scene and row[2] == max(r[2] for r in rows)}
+        plain, guided = of["volpath"], of["volpath guided"]
+        gains = [(plain[k] / guided[k]) ** 2 * plain[3] / guided[3] for k in (8, 9)]
+        print(f"{scene:20} gain {gains[0]:.2f}, trimmed {gains[1]:.2f}; error {plain[8]:.1%}, {guided[8]:.1%}; passes {plain[4]:.0f}, "
+              f"{guided[4]:.0f}; training {guided[5]:.1f} s; guided {guided[6]:.0%}, vertices {guided[7]:.0%}", flush=True)
+
+
+def draw_field(mote, quick):
+    """Pictures of mote_study_guiding_field, by name."""
+    folder, size = mote.folder, ["--width", "24", "--height", "16", "--paths", "256", "--samples", "4"] if quick else []
+    files = {name: folder / f"{name}.exr" for name in ("probabilities", "lobes")}
+    if not (mote.redraw and all(f.is_file() for f in files.values())):
+        subprocess.run([mote.program.parent / "mote_study_guiding_field", SCENES["smoke room"], "--at", *map(str, POINT), *size,
+                        *(word for name, f in files.items() for word in (f"--{name}", f))], check=True)
+    return {name: plane[..., 0] for f in files.values() for name, plane in read_exr(f).items()}
+
+
+def plot_lines(axes, rows, scene):
+    for method in METHODS:
+        points = [(float(r["seconds"]), float(r["relative_rmse"])) for r in rows if (r["scene"], r["method"]) == (scene, method)]
+        own = plotting.colour("volpath" if method == "volpath" else "combined")
+        axes.plot(*zip(*points), "o-", color=own, label={"volpath": "unguided", "volpath guided": "automatic"}[method])
+    plotting.log_axes(axes, "processor seconds", plotting.RMSE)
+    axes.set_title(scene, fontsize=11)
+
+
+def plot_table(table, path, field):
+    """Error against time in each scene, and under it the field."""
+    rows = list(csv.DictReader(table_of(table).splitlines()))
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    made, axes = plotting.figure(columns=3, rows=2 + (len(scenes) > 3), height=940 if len(scenes) > 3 else 640)
+    for ax, scene in zip(axes, scenes):
+        plot_lines(ax, rows, scene)
+    axes[0].legend(fontsize=10, frameon=False)
+    light = field["light"] / np.mean(field["light"])
+    for ax, picture, title, top in zip(axes[-3:], (field["guide"] - field["extinction"], field["lobes"] * 4 * np.pi, light),
+                                       ("scattering: guided - extinction", "directions learned at a point", "light that arrives there"),
+                                       (None, 4.0, 4.0)):
+        if top is None:
+            plotting.difference(ax, picture, 0.5, "difference of probabilities")
+        else:
+            ax.imshow(picture, cmap="gray", vmin=0.0, vmax=top, interpolation="nearest", aspect="auto")
+            ax.set(xticks=[], yticks=[])
+        ax.set_title(title, fontsize=11)
+    plotting.save(made, path)
+
+
+def run(mote, quick, output):
+    rows = []
+    for scene in list(SCENES)[:2 if quick else None]:
+        rows += study(mote, scene, quick)
+        say(rows[-4:])
+    header = ["scene", "method", "target_seconds", "seconds", "passes", "training_seconds", "guided", "vertices", "relative_rmse", "trimmed"]
+    write_csv(output.with_suffix(".csv"), header, rows)
+    plot_table(output.with_suffix(".csv"), output.with_suffix(".png"), draw_field(mote, quick))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main(__file__, __doc__, run))

@@ -59,11 +59,7 @@ class Scene:
         self.seconds, self.reference_seconds = (0.3, 0.6) if quick else (60, 120)
 
     def render_for(self, seconds, name, method, seed):
-        """As many passes as take so long, two at the least."""
-        settings, tag = self.settings | method, f"{self.name} {name}".replace(" ", "_")
-        render = lambda part, passes: self.mote.render(self.path, tag + part, settings, passes, seed, threads=1)
-        one, three = render("_one", 1).cpu, render("_three", 3).cpu
-        return render("", max(2, round((seconds - one) / max((three - one) / 2, 1e-3))))
+        return self.mote.render_for(seconds, self.path, f"{self.name} {name}".replace(" ", "_"), self.settings | method, seed)
 
     def references(self):
         method = {"integrator": self.of_references}

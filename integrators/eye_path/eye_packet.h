@@ -28,7 +28,7 @@ struct EyePacketSettings {
     std::optional<int> scattering_points{};
     bool records_seen = false;                                  ///< Lane::seen is filled
     const core::LitScene* lights = nullptr;                     ///< sampled lights, where these are not all
-    const lights::ScatteringGuide& guide = lights::no_guide();  ///< of the paths' directions
+    const lights::ScatteringGuide& guide = lights::no_guide();  ///< of the paths
 };
 
 template <bool Media>
@@ -48,7 +48,11 @@ class EyePacket {
     };
 
     EyePacket(const core::Scene& scene, const EyePacketSettings& settings, core::WalkContext& walk)
-        : scene_(scene), settings_(settings), walk_(walk) {}
+        : scene_(scene),
+          settings_(settings),
+          walk_(walk),
+          chooses_(Media && settings.guide.candidates() > 0),
+          candidates_(settings.guide.candidates()) {}
 
     void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];
@@ -145,6 +149,8 @@ class EyePacket {
             const auto seen = [&](const EyeSegment& s) { on_segment(i, lane, s); };
             if (takes_points(lane))
                 lane.alive = lane.path->advance_to_surface(walk_, lane.sum, *lane.points, seen);
+            else if (lane.alive && chooses_)
+                lane.alive = lane.path->arrive_by_choice(event_of(i), walk_, lane.sum, candidates_, seen);
             else if (lane.alive)
                 lane.alive = lane.path->arrive(event_of(i), walk_, lane.sum, seen);
             if (settings_.records_seen && lane.alive && lane.path->depth() == 1) {
@@ -166,6 +172,8 @@ class EyePacket {
     const core::Scene& scene_;
     EyePacketSettings settings_;
     core::WalkContext& walk_;
+    bool chooses_;  ///< the guide chooses vertices, where a lane has no points of its own
+    core::ScatteringPoints candidates_;  ///< of the segment of one lane
     std::array<Lane, width> lanes_;
     std::array<core::WalkEvent, width> events_;               ///< by lane, while they take a segment
     std::array<lights::LightConnection, width> connections_;  ///< by lane, while they look for light

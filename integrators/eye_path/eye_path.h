@@ -16,7 +16,7 @@
 #include "integrators/eye_path/scattered_light.h"
 #include "integrators/eye_path/transport_layers.h"
 #include "lights/direct_light/direct_light.h"
-#include "lights/guiding/scattering_guide.h"
+#include "lights/guiding/choose_scattering.h"
 
 namespace mote::integrators {
 
@@ -39,7 +39,7 @@ template <bool Media>
 class EyePath {
   public:
     /// `context` holds the path's generator, which also chooses the channel that drives distances.
-    /// `lights`: the sampled ones, where these are not all. `guide`: of its directions.
+    /// `lights`: the sampled ones, where these are not all. `guide`: of its directions and vertices.
     EyePath(const core::Scene& scene, const EyePathLimits& limits, const EyeRay& eye,
             core::WalkContext& context, const core::LitScene* lights = nullptr,
             const lights::ScatteringGuide& guide = lights::no_guide())
@@ -86,6 +86,13 @@ class EyePath {
     bool arrive(core::WalkEvent& event, core::WalkContext& context, TransportSum& sum,
                 const OnSegment& on_segment);
 
+    /// arrive() where the guide chooses the next vertex (ScatteringGuide::candidates()): the path reaches
+    /// the end of the segment with certainty, weighted by its transmittance, counts the light there, and
+    /// continues at the surface or at one of the candidates that media leave at `points`.
+    template <typename OnSegment>
+    bool arrive_by_choice(core::WalkEvent& event, core::WalkContext& context, TransportSum& sum,
+                          core::ScatteringPoints& points, const OnSegment& on_segment);
+
     /// advance() that continues to surfaces until the path has scattered: media on the segment scatter at
     /// `points`, and let the rest through. Those of the segment are chosen from `points` afterwards, whether
     /// or not there is a vertex; what scatters there is up to the method (light_at()).
@@ -130,8 +137,10 @@ class EyePath {
     /// Light of a connection that nothing occludes.
     core::Rgb finish_light(const lights::LightConnection& connection, core::WalkContext& context,
                            const lights::LightSampling& how) {
-        return factors_.connectable *
-               lights::finish_connection<Media>(lights_, vertex_, weights_, state_, connection, context, how);
+        lights::LightSampling sampling = how;
+        sampling.passes_media = chooses_vertices();
+        return factors_.connectable * lights::finish_connection<Media>(lights_, vertex_, weights_, state_,
+                                                                       connection, context, sampling);
     }
     /// The vertex at a scattering point of the last segment.
     core::ScatteringVertex vertex_at(const core::Vec3& position, const core::MediumState& state) const {
@@ -184,7 +193,20 @@ class EyePath {
     }
     template <typename Walk, typename OnSegment>
     bool arrive_by(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
-                   const OnSegment& on_segment);
+                   const OnSegment& on_segment) {
+        find_light(walk, event, sum, on_segment);
+        return make_next_vertex(event);
+    }
+    template <typename Walk, typename OnSegment>
+    void find_light(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
+                    const OnSegment& on_segment);
+    bool make_next_vertex(const core::WalkEvent& event);
+    bool has_ended() const { return depth_ == limits_.max_depth || scatterings_ == limits_.max_scatterings; }
+    bool chooses_vertices() const { return Media && guide_.candidates() > 0; }
+    /// Guides have not made the path's weight too large yet (lights::min_guide_ratio).
+    bool is_guided() const { return guide_ratio_ >= lights::min_guide_ratio; }
+    void choose_vertex(const core::ScatteringPoints& points, core::WalkEvent& event, float u);
+    bool survives_roulette(core::WalkContext& context);
     bool scatter(core::WalkContext& context);
     bool wants_more() const;
     /// Lights that the camera does not see: the first segment continues behind them.
@@ -201,7 +223,10 @@ class EyePath {
     core::PathWeights weights_;
     core::ScatteringVertex vertex_;
     lights::VmfMixture guided_;  ///< directions of the guide at the vertex
-    core::Vec2 choices_{0.0f};   ///< of the light, and of the lobe
+    /// Radiance that the guide expects of the path, and behind the vertex without next-event estimation
+    /// there, where it chooses vertices; 0: unknown.
+    float expected_ = 0.0f, indirect_ = 0.0f;
+    core::Vec2 choices_{0.0f};  ///< of the light, and of the lobe
     core::LightReceiver previous_;
     bool connected_ = false;  ///< next-event estimation at `previous_` could find the next light
     bool surface_first_ = true;
@@ -235,11 +260,53 @@ bool EyePath<Media>::arrive(core::WalkEvent& event, core::WalkContext& context, 
     return arrive_by(walk, event, sum, on_segment);
 }
 
-/// walk(emitted) sets `event`.
+template <bool Media>
+template <typename OnSegment>
+bool EyePath<Media>::arrive_by_choice(core::WalkEvent& event, core::WalkContext& context, TransportSum& sum,
+                                      core::ScatteringPoints& points, const OnSegment& on_segment) {
+    points.start(core::Rng(context.rng.next_u32()));
+    bool first = true;  // as in arrive()
+    const auto walk = [&](core::Rgb& emitted) {
+        if (std::exchange(first, false))
+            core::walk_to_surface_before(scene_, ray_, event, state_, weights_, emitted, points, context);
+        else
+            event = core::walk_to_surface(scene_, ray_, state_, weights_, emitted, points, context);
+    };
+    find_light(walk, event, sum, on_segment);
+    if (has_ended()) return false;
+    choose_vertex(points, event, context.rng.next_float());
+    return make_next_vertex(event);
+}
+
+/// Makes `event` the one of the chosen vertex. The throughput turns black where there is none.
+template <bool Media>
+void EyePath<Media>::choose_vertex(const core::ScatteringPoints& points, core::WalkEvent& event, float u) {
+    const bool surface = event.kind == core::WalkEvent::Kind::surface;
+    const auto candidates = points.kept();
+    const lights::ScatteringChoice choice =
+        lights::choose_scattering(candidates, surface ? weights_.throughput : core::Rgb(0.0f),
+                                  event.hit.position, is_guided() ? guide_ : lights::no_guide(), u);
+    if (!(choice.probability > 0.0f)) {
+        weights_.throughput = core::Rgb(0.0f);
+        return;
+    }
+    if (scatterings_ == 0) expected_ = choice.known ? choice.expected : 0.0f;
+    indirect_ = choice.known ? choice.indirect : 0.0f;
+    if (choice.index < candidates.size()) {
+        const core::ScatteringPoint& point = candidates[choice.index];
+        state_ = points.state_of(point), weights_.throughput = point.weight;
+        event.kind = core::WalkEvent::Kind::collision, event.medium = state_.current();
+        event.distance = points.distance_of(point, ray_), event.reflected = false, event.stop_chance = 1.0f;
+    }
+    weights_.throughput /= choice.probability;
+    guide_ratio_ *= choice.probability / choice.by_extinction;
+}
+
+/// Adds the light that a walk finds to `sum`. walk(emitted) sets `event`.
 template <bool Media>
 template <typename Walk, typename OnSegment>
-bool EyePath<Media>::arrive_by(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
-                               const OnSegment& on_segment) {
+void EyePath<Media>::find_light(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
+                                const OnSegment& on_segment) {
     core::Rgb& found = sum[layer_of_emission()];
     const auto go = [&] {
         const core::MediumState start = state_;
@@ -256,14 +323,18 @@ bool EyePath<Media>::arrive_by(const Walk& walk, const core::WalkEvent& event, T
     if (limits_.wanted[layer_of_emission()] && !hidden)
         found +=
             lights::found_light<Media>(lights_, event, ray_, weights_, connected_ ? &previous_ : nullptr);
-    if (event.kind == core::WalkEvent::Kind::escaped || depth_ == limits_.max_depth ||
-        scatterings_ == limits_.max_scatterings || core::is_black(weights_.throughput))
+}
+
+/// Returns false where the path ends.
+template <bool Media>
+bool EyePath<Media>::make_next_vertex(const core::WalkEvent& event) {
+    if (event.kind == core::WalkEvent::Kind::escaped || has_ended() || core::is_black(weights_.throughput))
         return false;
     vertex_ = make_vertex(event, ray_), segment_length_ = event.distance;
-    if (guide_ratio_ < lights::min_guide_ratio)
-        guided_.empty = true;
-    else
+    if (is_guided())
         guide_.find(vertex_, guided_);
+    else
+        guided_.empty = true;
     choices_ = sampler_.next_2d();
     return true;
 }
@@ -296,13 +367,20 @@ bool EyePath<Media>::wants_more() const {
     return scatterings_ + 1 != limits_.max_scatterings && limits_.wanted[transport_layer(2, surface)];
 }
 
+/// By the radiance that the guide expects, else by what is left of the throughput.
+template <bool Media>
+bool EyePath<Media>::survives_roulette(core::WalkContext& context) {
+    if (expected_ > 0.0f && indirect_ > 0.0f && vertex_.connectable() &&
+        depth_ < core::long_eye_path.vertices)
+        return survives_by_expectation<Media>(weights_, indirect_ / expected_, context.rng.next_float());
+    return depth_ < limits_.rr_depth ||
+           survives<Media>(weights_, core::sqr(eta_) * guide_ratio_, depth_, context.rng.next_float());
+}
+
 /// Leaves the vertex. Returns false where the path ends instead.
 template <bool Media>
 bool EyePath<Media>::scatter(core::WalkContext& context) {
-    if (!wants_more()) return false;
-    if (depth_ >= limits_.rr_depth &&
-        !survives<Media>(weights_, core::sqr(eta_) * guide_ratio_, depth_, context.rng.next_float()))
-        return false;
+    if (!wants_more() || !survives_roulette(context)) return false;
     const auto guided = lights::sample_guided(vertex_, guided_, choices_.y, sampler_.next_2d(),
                                               core::TransportMode::radiance);
     if (!guided) return false;

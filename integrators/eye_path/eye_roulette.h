@@ -19,4 +19,21 @@ bool survives(core::PathWeights& weights, float scale, int depth, float u) {
     return true;
 }
 
+/// Below this share of the radiance expected of a pixel a path is subject to roulette: the lower end of the
+/// window of Vorba & Křivánek 2016, 2 / (1 + s) with s = 5. Paths above it are not split.
+inline constexpr float roulette_window = 1.0f / 3.0f;
+/// Lower bound of the probability of survival: expectations may be wrong.
+inline constexpr float min_survival = 0.1f;
+
+/// survives() by expected contribution: `expected` is the radiance expected behind the vertex over that of
+/// the whole path when it began.
+template <bool Media>
+bool survives_by_expectation(core::PathWeights& weights, float expected, float u) {
+    const float contribution = core::average(lights::throughput_of<Media>(weights)) * expected;
+    const float q = std::clamp(contribution / roulette_window, min_survival, 1.0f);
+    if (!(u < q)) return false;
+    weights.throughput /= q;
+    return true;
+}
+
 }  // namespace mote::integrators

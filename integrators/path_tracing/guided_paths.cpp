@@ -2,38 +2,44 @@
 
 #include <bit>
 
-#include "integrators/path_tracing/guiding_trials.h"
 #include "integrators/path_tracing/path_recorder.h"
 
 namespace mote::integrators {
 
 using namespace core;
-using lights::GuidingSample, lights::LearnedGuide;
+using lights::GuideParts, lights::GuidingSamples, lights::LearnedGuide;
 
 namespace {
 
-void append(std::vector<GuidingSample>& to, const std::vector<GuidingSample>& from) {
-    to.insert(to.end(), from.begin(), from.end());
-}
+/// Variance times work, over that of unguided paths, from which a guide that continues to learn may still pay.
+constexpr double promising = 1.25;
 
 /// Empties the parts.
-GuideSamples joined(std::vector<GuideSamples>& parts) {
-    GuideSamples all;
-    for (GuideSamples& part : parts)
-        append(all.surfaces, part.surfaces), append(all.media, part.media), part = {};
+GuidingSamples joined(std::vector<GuidingSamples>& parts) {
+    GuidingSamples all;
+    for (GuidingSamples& part : parts) all.append(part), part = {};
     return all;
 }
 
+/// All that a guide can decide in the scene. Light of media that glow is not sampled along whole segments.
 template <bool Media>
-GuideSamples trace_training_pass(const Scene& scene, const RenderOptions& options,
-                                 const PathSettings& settings, const PassOfPaths& pass,
-                                 const LearnedGuide& guide, SharedCounters& counters) {
-    std::vector<GuideSamples> chunks(pass.chunks());
+GuideParts largest_parts(const Scene& scene, Guiding mode) {
+    const auto glows = [](const auto& medium) { return medium->traits().emissive; };
+    return !Media || mode == Guiding::directions || std::ranges::any_of(scene.media(), glows)
+               ? GuideParts::directions
+               : GuideParts::directions_and_vertices;
+}
+
+template <bool Media>
+GuidingSamples trace_training_pass(const Scene& scene, const RenderOptions& options,
+                                   const PathSettings& settings, const PassOfPaths& pass,
+                                   const LearnedGuide& guide, SharedCounters& counters) {
+    std::vector<GuidingSamples> chunks(pass.chunks());
     trace_pass<Media>(scene, options, settings, pass, guide, counters,
                       [&](std::size_t chunk, std::size_t, EyePacket<Media>& packet) {
                           PathRecorder<Media> recorder;
                           trace_paths(scene, settings, packet, &recorder);
-                          recorder.finish(packet, chunks[chunk].surfaces, chunks[chunk].media);
+                          recorder.finish(packet, chunks[chunk]);
                       });
     return joined(chunks);
 }
@@ -44,13 +50,22 @@ template <bool Media>
 GuideTraining<Media>::GuideTraining(const Scene& scene, const RenderOptions& options,
                                     const PathSettings& settings, double ray_work, SharedCounters& counters)
     : scene_(scene), options_(options), settings_(settings), counters_(counters) {
-    options_.memory.require(double(settings_.guiding.paths) * double(PathRecorder<Media>::max_records) *
-                                sizeof(GuidingSample) * 2.0,
+    options_.memory.require(double(settings_.guiding.paths) * double(PathRecorder<Media>::max_bytes) * 2.0,
                             "the samples of a training pass");
+    first_parts_ = largest_parts<Media>(scene_, settings_.guiding.mode);
     train();
-    if (settings_.guiding.mode == Guiding::automatic &&
-        !GuidingTrials<Media>(scene_, options_, settings_, ray_work, counters_).pays(*guide_))
-        guide_.reset();
+    const int later = std::max(0, settings_.guiding.passes - first_training_passes);
+    if (settings_.guiding.mode == Guiding::automatic) {
+        trials_.emplace(scene_, options_, settings_, ray_work, counters_);
+        decide(first_parts_ = trials_->best_of(*guide_, *first_parts_, later > 0 ? promising : 1.0));
+    }
+    if (first_parts_) picture_passes_ = std::uint32_t(later);
+}
+
+template <bool Media>
+void GuideTraining<Media>::decide(const std::optional<GuideParts>& parts) {
+    parts_ = parts;
+    if (parts) guide_->decide(*parts);
 }
 
 template <bool Media>
@@ -59,24 +74,21 @@ void GuideTraining<Media>::train() {
     guide_ = std::make_unique<LearnedGuide>(
         lights::GuidingField::Settings{guiding.leaf_samples, guiding.memory * 1048576.0}, Media,
         options_.memory);
+    guide_->decide(largest_parts<Media>(scene_, guiding.mode));
     for (std::uint32_t i = 0; i < std::uint32_t(std::min(first_training_passes, guiding.passes)); ++i) {
         const PassOfPaths pass{i, i, std::size_t(guiding.paths)};
-        GuideSamples samples =
+        GuidingSamples samples =
             trace_training_pass<Media>(scene_, options_, settings_, pass, *guide_, counters_);
         learn_from(i, samples);
     }
+    decide(first_parts_);
 }
 
 template <bool Media>
-void GuideTraining<Media>::learn_from(std::uint32_t pass, GuideSamples& samples) {
+void GuideTraining<Media>::learn_from(std::uint32_t pass, GuidingSamples& samples) {
     // Passes 1, 2, 4, ...: the later ones are guided better, so what was learned before counts half.
-    if (std::has_single_bit(pass + 1) && pass > 0) guide_->surfaces().scale(0.5), guide_->media().scale(0.5);
-    guide_->surfaces().add(samples.surfaces), guide_->media().add(samples.media);
-}
-
-template <bool Media>
-std::uint32_t GuideTraining<Media>::picture_passes() const {
-    return guide_ ? std::uint32_t(std::max(0, settings_.guiding.passes - first_training_passes)) : 0;
+    if (std::has_single_bit(pass + 1) && pass > 0) guide_->scale(0.5);
+    guide_->add(samples);
 }
 
 template <bool Media>
@@ -86,9 +98,11 @@ bool GuideTraining<Media>::records(std::uint32_t pass, std::size_t task) const {
 }
 
 template <bool Media>
-void GuideTraining<Media>::learn(std::vector<GuideSamples>& tasks) {
-    GuideSamples samples = joined(tasks);
+void GuideTraining<Media>::learn(std::vector<GuidingSamples>& tasks) {
+    GuidingSamples samples = joined(tasks);
     learn_from(std::uint32_t(first_training_passes) + learned_++, samples);
+    if (trials_ && learned_ == picture_passes_)
+        decide(trials_->best_of(*guide_, largest_parts<Media>(scene_, settings_.guiding.mode), 1.0));
 }
 
 template <bool Media>

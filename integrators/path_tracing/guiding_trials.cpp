@@ -1,10 +1,26 @@
 #include "integrators/path_tracing/guiding_trials.h"
 
+#include <utility>
+
 #include "core/render/counted_work.h"
 
 namespace mote::integrators {
 
 using namespace core;
+using lights::GuideParts, lights::LearnedGuide;
+
+namespace {
+
+/// Processor time of paths, in unguided rays: collisions represent lookups of the medium and of the guide.
+/// Measured in the smoke room and in fog (docs/methods/guiding.md, "Cost").
+double work_of(Statistics s, double ray_work) {
+    constexpr double collision = 0.3;
+    const double collisions = double(s.lookups["collisions"]);
+    s.lookups.clear();
+    return ray_work * counted_work(s) + collision * collisions;
+}
+
+}  // namespace
 
 template <bool Media>
 std::vector<float> GuidingTrials<Media>::light_of(const PassOfPaths& pass,
@@ -21,7 +37,8 @@ std::vector<float> GuidingTrials<Media>::light_of(const PassOfPaths& pass,
 }
 
 template <bool Media>
-auto GuidingTrials<Media>::trial(const lights::ScatteringGuide& guide, std::uint32_t begin) -> Trial {
+auto GuidingTrials<Media>::trial(const lights::ScatteringGuide& guide, double ray_work, std::uint32_t begin)
+    -> Trial {
     const auto paths = std::size_t(std::max(16, settings_.guiding.paths / 4));
     const auto layout = std::uint32_t(settings_.guiding.passes);
     Trial result;
@@ -30,7 +47,7 @@ auto GuidingTrials<Media>::trial(const lights::ScatteringGuide& guide, std::uint
         result.light[k] = light_of({layout + begin + k, layout, paths}, guide, own);
     Statistics statistics;
     own.report(statistics, Media), counters_.add(own);
-    result.work = counted_work(statistics);
+    result.work = work_of(statistics, ray_work);
     return result;
 }
 
@@ -69,11 +86,20 @@ std::array<double, 2> GuidingTrials<Media>::relative_variances(const Trial& plai
 }
 
 template <bool Media>
-bool GuidingTrials<Media>::pays(const lights::ScatteringGuide& guide) {
-    if (plain_.light.front().empty()) plain_ = trial(lights::no_guide(), 0);
-    const Trial guided = trial(guide, passes);
-    const auto [without, with] = relative_variances(plain_, guided);
-    return with * guided.work * ray_work_ < without * plain_.work;
+std::optional<GuideParts> GuidingTrials<Media>::best_of(LearnedGuide& guide, GuideParts largest,
+                                                        double limit) {
+    if (!plain_) plain_ = trial(lights::no_guide(), 1.0, 0);
+    std::optional<GuideParts> best;
+    std::uint32_t begin = passes;
+    for (const GuideParts parts : {GuideParts::directions, GuideParts::directions_and_vertices}) {
+        if (parts > largest) break;
+        guide.decide(parts);
+        const Trial guided = trial(guide, ray_work_, std::exchange(begin, begin + passes));
+        const auto [without, with] = relative_variances(*plain_, guided);
+        const double loss = with * guided.work / (without * plain_->work);
+        if (loss < limit) limit = loss, best = parts;
+    }
+    return best;
 }
 
 template class GuidingTrials<true>;

@@ -1,10 +1,12 @@
-// Trials of guides: do guided paths leave less variance for the same work?
+// Trials of guides: with which of their parts do paths leave least variance for the same work?
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "integrators/path_tracing/passes_of_paths.h"
+#include "lights/guiding/learned_guide.h"
 
 namespace mote::integrators {
 
@@ -16,9 +18,11 @@ class GuidingTrials {
                   double ray_work, SharedCounters& counters)
         : scene_(scene), options_(options), settings_(settings), ray_work_(ray_work), counters_(counters) {}
 
-    /// True where variance times counted work is less with the guide than without, in passes of both kinds
-    /// over the same pixels. Depends on scene, seed and guide alone. Throws Cancelled.
-    bool pays(const lights::ScatteringGuide& guide);
+    /// The parts, up to `largest`, with which variance times counted work is least, in passes of all kinds
+    /// over the same pixels; nothing where it is more than `limit` times that without the guide. Depends on
+    /// scene, seed and guide alone. Throws Cancelled.
+    std::optional<lights::GuideParts> best_of(lights::LearnedGuide& guide, lights::GuideParts largest,
+                                              double limit);
 
   private:
     static constexpr std::uint32_t passes = 4;  ///< of each kind
@@ -29,7 +33,7 @@ class GuidingTrials {
         double variance(std::size_t path) const;
     };
     static std::array<double, 2> relative_variances(const Trial& plain, const Trial& guided);
-    Trial trial(const lights::ScatteringGuide& guide, std::uint32_t begin);
+    Trial trial(const lights::ScatteringGuide& guide, double ray_work, std::uint32_t begin);
     std::vector<float> light_of(const PassOfPaths& pass, const lights::ScatteringGuide& guide,
                                 SharedCounters& counters);
 
@@ -38,7 +42,7 @@ class GuidingTrials {
     const PathSettings& settings_;
     double ray_work_;
     SharedCounters& counters_;
-    Trial plain_;  ///< once it was needed
+    std::optional<Trial> plain_;  ///< once it was made
 };
 
 }  // namespace mote::integrators

@@ -33,7 +33,7 @@ class Path final : public Integrator {
                       "path traces surfaces only; volpath renders media");
         else
             plan.leave_out("media", "no code for media runs", "the scene has none");
-        plan_guiding(plan, settings_.guiding);
+        plan_guiding(plan, settings_.guiding, requirements, false);
         plan_choice_of_lights(plan, scene);
         plan_caustics(plan, scene, requirements);
         return plan;

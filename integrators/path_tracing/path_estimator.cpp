@@ -39,8 +39,8 @@ class PathEstimator final : public Estimator {
         again_.add_statistics(guiding);
         statistics.values["guiding_rays"] += double(guiding.rays["closest"] + guiding.rays["occlusion"]);
         if (!guide()) return;
-        statistics.values["guiding_leaves"] +=
-            double(guide()->surfaces().leaves().size() + guide()->media().leaves().size());
+        statistics.values["guiding_leaves"] += double(guide()->leaves());
+        statistics.values["guided_vertices"] = guide()->candidates() > 0 ? 1.0 : 0.0;
     }
 
   private:
@@ -59,15 +59,15 @@ class PathEstimator final : public Estimator {
             }
         });
     }
-    void trace_packets(EyeTask<Media>& task, PathRecorder<Media>* recorder, GuideSamples* samples) {
+    void trace_packets(EyeTask<Media>& task, PathRecorder<Media>* recorder, lights::GuidingSamples* samples) {
         task.walk().all_boundaries = settings_.equiangular != nullptr;
         task.for_each([&](const PacketPixels&) {
             trace_paths(scene_, settings_, task.packet(), recorder);
-            if (recorder) recorder->finish(task.packet(), samples->surfaces, samples->media);
+            if (recorder) recorder->finish(task.packet(), *samples);
         });
     }
     bool trace_and_learn(ImageLoop<Media>& loop, const PassContext& context, PassImage& image) {
-        std::vector<GuideSamples> samples(loop.tasks());
+        std::vector<lights::GuidingSamples> samples(loop.tasks());
         const bool done = loop.run(context, image, eye(), [&](EyeTask<Media>& task) {
             PathRecorder<Media> recorder;
             const bool records = training_->records(context.index, task.index());

@@ -1,9 +1,9 @@
-// Records the radiance that arrives at the vertices of a packet's paths, as samples that a guiding field
-// learns from.
+// Records light at the vertices of a packet's paths, as samples that a guide learns from.
 //
 // What a path finds after vertex k, over its weight behind that vertex, is the radiance that arrives there
 // from the direction in which it went on. Light that next-event estimation could have found as well has its
-// MIS weight in it: the field learns what is left to directions.
+// MIS weight in it: the field learns what is left to directions. In scenes with media, what a path finds from
+// vertex k on, over its weight before that vertex, is the radiance that is reflected there.
 #pragma once
 
 #include "integrators/eye_path/eye_packet.h"
@@ -20,44 +20,89 @@ class PathRecorder {
     /// Before a segment of a lane makes its vertex.
     void on_segment(int i, const Lane& lane, const EyeSegment& segment) {
         const core::ScatteringVertex& left = lane.path->vertex();
-        std::vector<Record>& records = records_[std::size_t(i)];
-        if (lane.path->depth() == 1 || !lights::LearnedGuide::guides(left) || records.size() == max_records)
+        Path& path = paths_[std::size_t(i)];
+        path.left_by_record = false;
+        if (lane.path->depth() == 1 || !lights::LearnedGuide::guides(left) ||
+            path.arriving.size() == max_records)
             return;
         const core::PathWeights& w = segment.before;
         const float inverse_distance = 1.0f / segment.event.distance;
         if (!(w.light.x > 0.0f)) return;                                              // a delta scattering
         if (!(inverse_distance >= 0.0f) || !std::isfinite(inverse_distance)) return;  // it went nowhere
         const float inverse_pdf = w.light.x / (Media ? w.unidirectional.x : 1.0f);
-        records.push_back({{left.position, segment.ray.direction, inverse_pdf, inverse_distance},
-                           lights::throughput_of<Media>(w),
-                           found_[std::size_t(i)],
-                           left.on_surface()});
+        path.arriving.push_back({{left.position, segment.ray.direction, inverse_pdf, inverse_distance},
+                                 lights::throughput_of<Media>(w),
+                                 path.found,
+                                 left.on_surface()});
+        path.left_by_record = true;
+    }
+    /// After a segment of a lane, before its vertex, if any, is connected to lights.
+    void on_arrival(int i, const Lane& lane) {
+        Path& path = paths_[std::size_t(i)];
+        path.at_record = Media && lane.alive && path.reflected.size() < max_records;
+        if (!path.at_record) return;
+        // A guide may have chosen a vertex before the end of the segment.
+        const float inverse_distance = 1.0f / lane.path->segment_length();
+        if (path.left_by_record && inverse_distance > 0.0f && std::isfinite(inverse_distance))
+            path.arriving.back().sample.inverse_distance = inverse_distance;
+        const core::ScatteringVertex& vertex = lane.path->vertex();
+        path.reflected.push_back({vertex.position, lane.path->throughput(), total(lane.sum), core::Rgb(0.0f),
+                                  vertex.on_surface()});
     }
     /// After the vertex of a lane was connected to lights.
-    void on_vertex(int i, Lane& lane) { found_[std::size_t(i)] = total(lane.sum); }
+    void on_vertex(int i, const Lane& lane) {
+        Path& path = paths_[std::size_t(i)];
+        path.found = total(lane.sum);
+        if (path.at_record) path.reflected.back().found_connected = path.found;
+    }
 
     /// Appends the samples of the lanes' paths, which have ended, and forgets them.
-    void finish(Packet& packet, std::vector<lights::GuidingSample>& surfaces,
-                std::vector<lights::GuidingSample>& media) {
+    void finish(Packet& packet, lights::GuidingSamples& samples) {
         for (int i = 0; i < Packet::width; ++i) {
+            Path& path = paths_[std::size_t(i)];
             const core::Rgb all = total(packet[i].sum);
-            for (const Record& r : records_[std::size_t(i)]) {
+            for (const Arriving& r : path.arriving) {
                 lights::GuidingSample sample = r.sample;
                 sample.weight *= radiance(all - r.found, r.weight);
-                if (std::isfinite(sample.weight)) (r.on_surface ? surfaces : media).push_back(sample);
+                if (std::isfinite(sample.weight))
+                    (r.on_surface ? samples.surfaces : samples.media).push_back(sample);
             }
-            records_[std::size_t(i)].clear(), found_[std::size_t(i)] = core::Rgb(0.0f);
+            for (const Reflected& r : path.reflected) {
+                const float whole = radiance(all - r.found, r.weight),
+                            indirect = radiance(all - r.found_connected, r.weight);
+                if (std::isfinite(whole) && std::isfinite(indirect))
+                    (r.on_surface ? samples.reflected_by_surfaces : samples.reflected_by_media)
+                        .push_back({r.position, whole, indirect});
+            }
+            path.arriving.clear(), path.reflected.clear(), path.found = core::Rgb(0.0f);
         }
     }
 
     static constexpr std::size_t max_records = 64;  ///< vertices of a path that are recorded
+    /// Largest memory of the samples of a path [B].
+    static constexpr std::size_t max_bytes =
+        max_records * (sizeof(lights::GuidingSample) + Media * sizeof(lights::ReflectedSample));
 
   private:
-    struct Record {
+    struct Arriving {
         lights::GuidingSample sample;  ///< its weight is 1 / pdf so far
         core::Rgb weight;              ///< of the path behind the vertex
         core::Rgb found;               ///< by the path, up to the vertex
         bool on_surface;               ///< else in a medium
+    };
+    struct Reflected {
+        core::Vec3 position;
+        core::Rgb weight;           ///< of the path before the vertex
+        core::Rgb found;            ///< by the path, before the vertex
+        core::Rgb found_connected;  ///< and by next-event estimation there
+        bool on_surface;            ///< else in a medium
+    };
+    struct Path {
+        std::vector<Arriving> arriving;
+        std::vector<Reflected> reflected;
+        core::Rgb found{0.0f};        ///< up to the last vertex
+        bool left_by_record = false;  ///< the last segment is that of arriving.back()
+        bool at_record = false;       ///< the last vertex is that of reflected.back()
     };
     static core::Rgb total(const TransportSum& sum) {
         core::Rgb all(0.0f);
@@ -72,8 +117,7 @@ class PathRecorder {
         return sum / 3.0f;
     }
 
-    std::array<std::vector<Record>, Packet::width> records_;
-    std::array<core::Rgb, Packet::width> found_{};
+    std::array<Path, Packet::width> paths_;
 };
 
 }  // namespace mote::integrators

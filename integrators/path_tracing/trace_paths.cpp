@@ -37,6 +37,7 @@ void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Med
     };
     const auto step = [&] {
         if (weighted) packet.for_each(factors_of_edge);
+        if (recorder) packet.for_each([&](int i, Lane& lane) { recorder->on_arrival(i, lane); });
         packet.sample_lights({lit_along});
         if (recorder) packet.for_each([&](int i, Lane& lane) { recorder->on_vertex(i, lane); });
     };

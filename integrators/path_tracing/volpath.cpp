@@ -70,7 +70,7 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
     else
         plan.error_unknown.clear();
     plan.run("paths", "one per pixel and pass", "light and scattering directions combined at every vertex");
-    plan_guiding(plan, settings_.guiding);
+    plan_guiding(plan, settings_.guiding, requirements, true);
     plan_media(plan, requirements);
     plan_choice_of_lights(plan, scene);
     plan_medium_lights(plan, requirements);

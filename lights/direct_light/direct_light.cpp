@@ -9,16 +9,15 @@ using namespace core;
 
 namespace {
 
-/// Multiplies by the transmittance of media and panes along the ray, by marching. Returns false where it is
-/// 0.
-bool march_to_light(const LitScene& scene, const Ray& ray, const MediumState& state, float voxels,
-                    PathWeights& connection, WalkContext& context) {
+/// Multiplies by the transmittance of media, transmittance_of(medium, ray), and of panes along the ray.
+/// Returns false where it is 0.
+template <typename TransmittanceOf>
+bool attenuate(const LitScene& scene, const Ray& ray, const MediumState& state, PathWeights& connection,
+               const TransmittanceOf& transmittance_of) {
     const auto medium = [&](float t0, float t1, const MediumState& here) {
         const Medium* m = here.current();
         if (!m || !(t0 < t1)) return true;
-        const Vec3d depth =
-            m->optical_depth_along({ray.origin, ray.direction, t0, t1}, voxels, context.tracking);
-        connection.throughput *= Rgb(glm::exp(-depth));
+        connection.throughput *= transmittance_of(*m, Ray{ray.origin, ray.direction, t0, t1});
         return !is_black(connection.throughput);
     };
     const auto pane = [&](const SurfaceHit& hit) {
@@ -36,11 +35,16 @@ bool come_through(const LitScene& scene, const ScatteringVertex& vertex, const L
     if (c.light.delta) ray.t_max = c.light.distance;  // there is no surface at its end
     if constexpr (Media) {
         weights.light = weights.unidirectional;
+        const MediumState start = vertex.state_towards(state, c.light.wi);
         if (how.marched_voxels > 0.0f && c.light.delta)
-            return march_to_light(scene, ray, vertex.state_towards(state, c.light.wi), how.marched_voxels,
-                                  weights, context);
-        const Medium* there = scene.connect(ray, vertex.state_towards(state, c.light.wi), weights,
-                                            context.rng, context.tracking);
+            return attenuate(scene, ray, start, weights, [&](const Medium& m, const Ray& r) {
+                return Rgb(glm::exp(-m.optical_depth_along(r, how.marched_voxels, context.tracking)));
+            });
+        if (how.passes_media)
+            return attenuate(scene, ray, start, weights, [&](const Medium& m, const Ray& r) {
+                return m.transmittance(r, context.rng, context.tracking);
+            });
+        const Medium* there = scene.connect(ray, start, weights, context.rng, context.tracking);
         return !c.light.inside || there == c.light.inside;
     } else {
         weights.unidirectional = weights.light = Rgb(1.0f);

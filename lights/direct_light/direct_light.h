@@ -34,6 +34,9 @@ struct LightSampling {
     /// Above 0: what media take from lights that no direction hits is marched, in steps of so many voxels:
     /// without noise, biased by the step (Medium::optical_depth_along).
     float marched_voxels = 0.0f;
+    /// Paths reach the end of a segment with certainty, weighted by its transmittance: the density of the
+    /// other technique does not hold it.
+    bool passes_media = false;
 };
 
 /// Next-event estimation: the light at `vertex` from one light sampled by `u_light` (and a point on it by

@@ -28,6 +28,9 @@ struct GuidingSample {
 /// A mixture that learns.
 class MixtureFit {
   public:
+    using Sample = GuidingSample;
+    static constexpr double inherited = 0.5;  ///< by each half of a leaf (SpatialTree)
+
     /// An even mixture, as seen from `pivot`.
     explicit MixtureFit(const core::Vec3& pivot) : pivot_(pivot) { mixture_.empty = true; }
 

@@ -1,22 +1,34 @@
-// Directions of a path at its scattering vertices: those of the BSDF or phase function, and those that a
+// Guides of paths.
+//
+// Directions of a path at its scattering vertices are those of the BSDF or phase function, and those that a
 // guide adds to them, mixed by a fixed probability (one-sample multiple importance sampling; Vorba et al.
-// 2014).
+// 2014). A guide may also expect radiance at vertices: then it chooses them (choose_scattering.h), and ends
+// paths.
 //
 // The mixture's density replaces that of the BSDF or phase function wherever it counts: in the weight of the
 // path, and against next-event estimation. A path therefore stays unbiased whatever the guide has learned.
 #pragma once
 
 #include "core/scene/scattering_vertex.h"
+#include "lights/guiding/reflected_radiance.h"
 #include "lights/guiding/vmf_mixture.h"
 
 namespace mote::lights {
 
-/// Source of further directions at vertices.
+/// Source of further directions at vertices, and of vertices.
 class ScatteringGuide {
   public:
     virtual ~ScatteringGuide() = default;
     /// Sets `lobes` to the directions for a vertex, or leaves them empty where it scatters by itself alone.
     virtual void find(const core::ScatteringVertex& vertex, VmfMixture& lobes) const = 0;
+    /// Number of candidates that a homogeneous medium leaves on a segment for the choice of the next vertex;
+    /// grids leave up to four times as many (core::ScatteringPoints). 0: distances by extinction. Not in
+    /// scenes with media that glow.
+    virtual int candidates() const { return 0; }
+    /// Radiance expected behind a vertex.
+    virtual ExpectedRadiance expected(const core::Vec3& /*position*/, bool /*on_surface*/) const {
+        return {};
+    }
 };
 
 /// Adds none.

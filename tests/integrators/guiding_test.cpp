@@ -1,5 +1,5 @@
 // Guided paths: the mean of unguided ones on surfaces and in media, and fields that teach the wrong
-// directions change noise only. Densities that leave something out are seen.
+// directions and vertices change noise only. Densities that leave something out are seen.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -26,18 +26,26 @@ std::shared_ptr<const Integrator> paths(const std::string& type, const std::stri
 }
 
 void check_equal(const Scene& scene, const std::string& type, std::uint32_t passes,
-                 const std::string& more = "") {
-    const auto guided = render_statistics(scene, *paths(type, "on", more), {8, passes, 5});
+                 const std::string& more = "", const std::string& guiding = "on") {
+    const auto guided = render_statistics(scene, *paths(type, guiding, more), {8, passes, 5});
     const auto reference = render_statistics(scene, *paths(type, "off", more), {8, passes, 6});
     for (const std::string& layer : reference.layers) check_same_mean(guided, layer, reference, layer);
     check_same_mean(guided, "beauty", reference, "beauty", {1.1});
     CHECK(guided.non_finite == 0);
 }
 
-/// A guide whose lobes point anywhere, whose density counts as `factor` times what it is.
+/// A guide whose lobes point anywhere, whose density counts as `factor` times what it is; and one that
+/// expects anything of vertices.
 class AnyGuide final : public lights::ScatteringGuide {
   public:
-    explicit AnyGuide(float factor) : factor_(factor) {}
+    explicit AnyGuide(float factor, bool vertices = false) : factor_(factor), vertices_(vertices) {}
+    int candidates() const override { return vertices_ ? 8 : 0; }
+    lights::ExpectedRadiance expected(const Vec3& p, bool on_surface) const override {
+        if (!vertices_) return {};
+        const float mean =
+            std::fabs((on_surface ? 1.0f : 0.5f) + std::sin(5.0f * p.x) * std::cos(7.0f * p.y));
+        return {mean, mean, 0.5f * mean, true};
+    }
     void find(const ScatteringVertex& vertex, lights::VmfMixture& lobes) const override {
         lobes.empty = true;
         if (!lights::LearnedGuide::guides(vertex)) return;
@@ -49,6 +57,7 @@ class AnyGuide final : public lights::ScatteringGuide {
 
   private:
     float factor_;
+    bool vertices_;
 };
 
 /// Paths with a guide of a test.
@@ -138,6 +147,70 @@ TEST_CASE("A guide of any directions keeps the mean; a density that is not its o
     CHECK_FALSE(same_mean(wrong, "beauty", reference, "beauty", OnFailure::nothing).passed);
 }
 
+TEST_CASE("A guide that expects anything of vertices keeps the mean", "[guiding]") {
+    const auto path = std::filesystem::temp_directory_path() / "mote_guided_vertices.vol";
+    for (const std::string& medium : {forward_fog, smoke_medium(path.string())}) {
+        const auto scene = scene_from(box(mixed, medium), 8);
+        const auto reference =
+            render_statistics(*scene, *integrator_from(R"(<integrator type="volpath"/>)"), {4, 1500, 1});
+        const auto any = render_statistics(*scene, PathsOf(AnyGuide(1.0f, true)), {4, 3000, 2});
+        for (const std::string& layer : reference.layers) check_same_mean(any, layer, reference, layer);
+        check_same_mean(any, "beauty", reference, "beauty", {1.1});
+    }
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("Guided paths keep the mean with directions alone", "[guiding][equality]") {
+    check_equal(*scene_from(box(grey, forward_fog), 16), "volpath", 3000, "", "directions");
+}
+
+TEST_CASE("Guided vertices keep the mean among panes and with lights that the camera does not see",
+          "[guiding][equality]") {
+    check_equal(*scene_from(leafy_box(forward_fog), 16), "volpath", 3000,
+                R"(<boolean name="hide_emitters" value="true"/>)");
+}
+
+TEST_CASE("Guided vertices keep the mean with equi-angular sampling", "[guiding][equality]") {
+    std::string xml = box(grey, forward_fog);
+    xml.insert(xml.find("<sensor"),
+               R"(<emitter type="point"><point name="position" x="0.2" y="0.3" z="0.1"/></emitter>)");
+    check_equal(*scene_from(xml, 16), "volpath", 3000, R"(<boolean name="equiangular" value="true"/>)");
+}
+
+TEST_CASE("Guided vertices in media that absorb nothing are in equilibrium", "[guiding][furnace]") {
+    for (const double depth : {0.01, 1.0, 30.0})
+        for (const double z : {-4.0, -0.3}) {
+            const auto scene = scene_from(
+                fmt::format(
+                    R"(<scene version="3.0.0"><emitter type="constant"/><shape type="sphere"><bsdf type="null"/>
+                <medium type="homogeneous" name="interior"><float name="sigma_t" value="{}"/><float name="albedo" value="1"/>
+                <phase type="hg"><float name="g" value="0.7"/></phase></medium></shape><sensor type="perspective">
+                <float name="fov" value="30"/><transform name="to_world"><lookat origin="0, 0, {}" target="0, 0, 1"
+                up="0, 1, 0"/></transform></sensor></scene>)",
+                    depth / 2.0, z),
+                8);
+            CAPTURE(depth, z);
+            check_mean_is(render_statistics(*scene, *paths("volpath", "on"), {4, 400, 7}), "beauty", 1.0);
+        }
+}
+
+TEST_CASE("Vertices are guided unless media glow", "[guiding]") {
+    const std::string glowing =
+        R"(<medium type="homogeneous" name="interior"><float name="sigma_t" value="1"/><float name="albedo" value="0.5"/>
+        <rgb name="Le" value="1, 2, 3"/></medium>)";
+    const auto guides_vertices = [](const Scene& scene, const std::string& guiding) {
+        const RenderOptions options{.width = 8, .height = 8};
+        Statistics statistics;
+        paths("volpath", guiding)->prepare(scene, options)->add_statistics(statistics);
+        return statistics.values.at("guided_vertices") > 0.0;
+    };
+    const auto glow = scene_from(box(grey, glowing), 8), fog = scene_from(box(grey, forward_fog), 8);
+    CHECK_FALSE(guides_vertices(*glow, "on"));
+    CHECK(guides_vertices(*fog, "on"));
+    CHECK_FALSE(guides_vertices(*fog, "directions"));
+    check_equal(*glow, "volpath", 1500);
+}
+
 TEST_CASE("A closed furnace is one with guided paths", "[guiding]") {
     const auto scene = scene_from(furnace, 8);
     check_mean_is(render_statistics(*scene, *paths("path", "on"), {4, 400, 1}), "beauty", 1.0, {1.02});
@@ -198,8 +271,7 @@ TEST_CASE("What is learned is where light comes from", "[guiding]") {
 TEST_CASE("A pass is guided by the passes before it, in any order", "[guiding]") {
     const auto scene = scene_from(box(mixed, forward_fog), 16);
     const RenderOptions options{.seed = 4, .width = 16, .height = 16};
-    const auto integrator = paths("volpath", "on");
-    const auto layers = integrator->layers(*scene).size();
+    const std::size_t layers = paths("volpath", "on")->layers(*scene).size();
     const std::atomic<bool> cancelled{false};
     const auto filter = film_filter(*scene);
     const auto pass = [&](Estimator& estimator, std::uint32_t index) {
@@ -210,10 +282,15 @@ TEST_CASE("A pass is guided by the passes before it, in any order", "[guiding]")
             light.insert(light.end(), image.layer(l).begin(), image.layer(l).end());
         return light;
     };
-    const auto in_order = integrator->prepare(*scene, options), alone = integrator->prepare(*scene, options);
     std::vector<std::vector<Rgb>> expected;
-    for (std::uint32_t i = 0; i <= 40; ++i) expected.push_back(pass(*in_order, i));
-    for (const std::uint32_t i : {20u, 3u, 40u, 32u}) CHECK(pass(*alone, i) == expected[i]);
+    for (const char* guiding : {"automatic", "on"}) {
+        const auto integrator = paths("volpath", guiding);
+        const auto in_order = integrator->prepare(*scene, options),
+                   alone = integrator->prepare(*scene, options);
+        expected.clear();
+        for (std::uint32_t i = 0; i <= 40; ++i) expected.push_back(pass(*in_order, i));
+        for (const std::uint32_t i : {20u, 3u, 40u, 32u}) CHECK(pass(*alone, i) == expected[i]);
+    }
     // It has learned from them.
     const auto first_only = integrator_from(
         R"(<integrator type="volpath"><string name="guiding" value="on"/><integer name="guiding_passes" value="7"/>
