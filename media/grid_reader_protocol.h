@@ -20,8 +20,9 @@ struct GridReaderHeader {
 inline constexpr int grid_reader_descriptor = 3;                ///< the memory file in the helper
 inline constexpr std::uint64_t grid_reader_max_text = 1 << 24;  ///< longer answers are refused
 
-// Arguments: mode ("read" or "list"), file, memory limit [bytes], CPU limit [s], clamp negatives ("0"/"1"),
-// grid name. The JSON is {"error": "..."} or, for "read", name, active_voxels, clamped, index_to_world (16
-// numbers, columns), warnings; for "list", {"grids": [...]}.
+// Arguments: mode ("read", "list" or "sizes"), file, memory limit [bytes], CPU limit [s], clamp negatives
+// ("0"/"1"), grid name. The JSON is {"error": "..."} or, for "read", name, active_voxels, clamped,
+// index_to_world (16 numbers, columns), warnings; for "list", {"grids": [...]}; for "sizes", {"bytes": ...}
+// of one grid, from metadata alone.
 
 }  // namespace mote::media

@@ -285,12 +285,35 @@ void list_grids(const Request& request) {
     answer({{"grids", grids}});
 }
 
+/// In memory: as the file states it, or of its voxels; 0 where it says neither.
+void size_grid(const Request& request) {
+    double bytes = 0.0;
+    if (request.path.ends_with(".nvdb")) {
+        for (const auto& data : nanovdb::io::readGridMetaData(request.path))
+            if (data.gridName == request.grid_name) bytes = double(data.gridSize);
+    } else {
+        openvdb::io::File file(request.path);
+        file.open(false);
+        json ignored = json::array();
+        const auto grid = file.readGridMetadata(choose_grid(file, request.grid_name, ignored));
+        const auto stated = [&](const char* name) {
+            const auto value = grid->getMetadata<openvdb::Int64Metadata>(name);
+            return value ? double(std::max<openvdb::Int64>(0, value->value())) : 0.0;
+        };
+        bytes = std::max(stated(openvdb::GridBase::META_FILE_MEM_BYTES),
+                         double(sizeof(float)) * stated(openvdb::GridBase::META_FILE_VOXEL_COUNT));
+    }
+    answer({{"bytes", bytes}});
+}
+
 void run(const Request& request) {
     try {
         const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
         openvdb::initialize();
         if (request.mode == "list")
             list_grids(request);
+        else if (request.mode == "sizes")
+            size_grid(request);
         else
             read_grid(request);
     } catch (const Refusal& e) {

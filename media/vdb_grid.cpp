@@ -5,7 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/files/whole_file.h"
 #include "core/objects/error.h"
+#include "media/grid_reader_process.h"
 #include "media/nano_grid.h"
 
 namespace mote::media {
@@ -121,6 +123,18 @@ std::shared_ptr<const VdbGrid> load_vdb_grid(const std::string& path, const std:
             fmt::format("the background is {}: the medium continues beyond the grid, up to its boundary",
                         data->background));
     return std::make_shared<VdbGrid>(std::move(data));
+}
+
+double vdb_grid_memory(const std::string& path, const std::string& grid_name, double small) {
+    const auto size = double(core::size_of_file(path));
+    if (size < small) return size;  // the helper would take longer than reading it
+    const json document = parsed(run_grid_reader("sizes", path, grid_name, {}).text, path);
+    // No grid compresses better than this: metadata that say more are damaged.
+    constexpr double best_compression = 1000.0;
+    return with_answer(path, [&] {
+        const double bytes = document.at("bytes").get<double>();
+        return bytes > 0.0 ? std::min(bytes, best_compression * size) : size;
+    });
 }
 
 std::vector<VdbGridInfo> list_vdb_grids(const std::string& path, const VdbLoadOptions& options) {

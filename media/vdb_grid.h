@@ -74,6 +74,10 @@ std::shared_ptr<const VdbGrid> load_vdb_grid(const std::string& path,
                                              const std::string& grid_name = "density",
                                              const VdbLoadOptions& options = {});
 
+/// The least that load_vdb_grid() returns [B], by the file's metadata; of a file below `small` bytes its
+/// size. Throws InputError.
+double vdb_grid_memory(const std::string& path, const std::string& grid_name, double small = 16e6);
+
 /// Every grid of a file. Throws InputError as above.
 std::vector<VdbGridInfo> list_vdb_grids(const std::string& path, const VdbLoadOptions& options = {});
 

@@ -100,6 +100,12 @@ void register_vdb_volume(core::Registry& registry) {
         [kept = std::make_shared<KeptGrids>()](const VdbSettings& s, const core::Properties& p) {
             return make_vdb(s, p, *kept);
         });
+    registry.set_file_memory(core::Category::volume, "vdbvolume", [](const core::Properties& p) {
+        const auto grid = p.values.find("grid");
+        const std::string name =
+            grid == p.values.end() ? VdbSettings().grid : std::get<std::string>(grid->second.value);
+        return vdb_grid_memory(p.find_file("filename"), name);
+    });
 }
 
 }  // namespace mote::media

@@ -67,14 +67,22 @@ void LoadedScene::load(const SceneChanges& changes, const Load& load_now) {
 }
 
 LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes) {
-    return from_file(path, changes, std::make_shared<const core::Registry>(make_registry(changes.plugins)));
+    return from_file(path, changes, std::make_shared<const core::Registry>(make_registry(changes.plugins)),
+                     core::MemoryBudget());
 }
 
 LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes,
                                    std::shared_ptr<const core::Registry> registry) {
+    return from_file(path, changes, std::move(registry), std::nullopt);
+}
+
+LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes,
+                                   std::shared_ptr<const core::Registry> registry,
+                                   const std::optional<core::MemoryBudget>& memory) {
     LoadedScene loaded;
     loaded.registry_ = registry;
-    loaded.load(changes, [&](const core::LoadOptions& options) {
+    loaded.load(changes, [&](core::LoadOptions options) {
+        options.memory = memory;
         return core::load_scene(path, *loaded.registry_, options);
     });
     loaded.reload_ = [path, registry](const SceneChanges& others) {
@@ -143,7 +151,14 @@ std::shared_ptr<const core::PreviousFrame> LoadedScene::frame_of(LoadedScene&& s
     return std::make_shared<const core::PreviousFrame>(std::move(scene.scene_));
 }
 
-core::Plan LoadedScene::plan() const { return integrator().plan(*scene_, core::find_requirements(*scene_)); }
+core::Plan LoadedScene::plan() const {
+    constexpr double worth_a_line = 1e8;  // [B]
+    core::Plan plan = integrator().plan(*scene_, core::find_requirements(*scene_));
+    if (core::sum_of(report_.files) >= worth_a_line)
+        plan.run("memory of files", "at least " + core::memory_summary(report_.files),
+                 "by their headers, before they are read");
+    return plan;
+}
 
 std::vector<std::string> LoadedScene::warnings() const { return scene_warnings(*scene_, report_); }
 

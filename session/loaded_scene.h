@@ -43,7 +43,8 @@ class LoadedScene {
   public:
     /// All throw InputError, or SceneErrors with all that is wrong. A path may name XML, glTF, GLB or pbrt.
     static LoadedScene from_file(const std::string& path, const SceneChanges& changes = {});
-    /// By a registry that several scenes share, for it keeps meshes that they have in common.
+    /// By a registry that several scenes share, for it keeps meshes that they have in common: what is still
+    /// to be loaded is then not known, and not compared with the memory that is left.
     static LoadedScene from_file(const std::string& path, const SceneChanges& changes,
                                  std::shared_ptr<const core::Registry> registry);
     /// Relative file names are looked up in `folder`; `name` replaces that of a file in messages.
@@ -79,6 +80,9 @@ class LoadedScene {
 
   private:
     LoadedScene() = default;
+    static LoadedScene from_file(const std::string& path, const SceneChanges& changes,
+                                 std::shared_ptr<const core::Registry> registry,
+                                 const std::optional<core::MemoryBudget>& memory);
     static LoadedScene from_text(const std::string& xml, const std::string& folder,
                                  const SceneChanges& changes, const std::string& name,
                                  std::shared_ptr<const core::Registry> registry);

@@ -18,6 +18,14 @@ void require_file(const std::string& path) {
         throw InputError("is a pipe or a device, not a file");
 }
 
+std::uint64_t size_of_file(const std::string& path) {
+    require_file(path);
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (error) throw InputError("cannot be opened: " + error.message());
+    return size;
+}
+
 std::vector<std::byte> read_whole_file(const std::string& path, const MemoryBudget& memory) {
     require_file(path);
     std::ifstream file(path, std::ios::binary | std::ios::ate);

@@ -28,6 +28,7 @@ struct BitmapTextureParameters {
 };
 /// The first row of the bitmap lies at v = 0, texel centres at half-integers (Mitsuba 3; its OBJ reader turns
 /// v over). Throws InputError when the bitmap is empty or holds values that are not finite.
-std::shared_ptr<Texture> make_bitmap_texture(Bitmap bitmap, const BitmapTextureParameters& parameters = {});
+std::shared_ptr<Texture> make_bitmap_texture(const Bitmap& bitmap,
+                                             const BitmapTextureParameters& parameters = {});
 
 }  // namespace mote::core

@@ -31,7 +31,7 @@ std::optional<Category> find_category(std::string_view name) {
 void Registry::add(Manual manual, Factory factory) {
     const auto key = std::make_pair(manual.category, manual.type);
     if (!factory) throw std::logic_error("type '" + manual.type + "' has no factory");
-    if (!entries_.emplace(key, Entry{std::move(manual), std::move(factory)}).second)
+    if (!entries_.emplace(key, Entry{std::move(manual), std::move(factory), {}}).second)
         throw std::logic_error(category_name(key.first) + " '" + key.second + "' is registered twice");
 }
 
@@ -45,6 +45,15 @@ const Factory& Registry::factory(Category category, const std::string& type) con
     if (it == entries_.end())
         throw std::out_of_range("no " + category_name(category) + " of type '" + type + "'");
     return it->second.factory;
+}
+
+void Registry::set_file_memory(Category category, const std::string& type, FileMemory memory) {
+    entries_.at({category, type}).file_memory = std::move(memory);
+}
+
+const FileMemory* Registry::file_memory(Category category, const std::string& type) const {
+    const auto it = entries_.find({category, type});
+    return it != entries_.end() && it->second.file_memory ? &it->second.file_memory : nullptr;
 }
 
 std::shared_ptr<Object> Registry::make(const Properties& properties) const {

@@ -33,6 +33,10 @@ struct Manual {
 /// Makes an object of its parameters; throws InputError.
 using Factory = std::function<std::shared_ptr<Object>(const Properties&)>;
 
+/// The least that an object made of the file "filename" takes [B], as far as the file's header shows it; of the
+/// parameters it has those that are text. Throws InputError.
+using FileMemory = std::function<double(const Properties&)>;
+
 /// The types of all categories, by name.
 class Registry {
   public:
@@ -45,6 +49,10 @@ class Registry {
     /// Makes what `properties` describe, for programs without a scene file: throws InputError for a type or a
     /// setting that does not exist, with the nearest name, and for a value that the factory refuses.
     std::shared_ptr<Object> make(const Properties& properties) const;
+    /// For types with a parameter "filename". Throws std::out_of_range when the type is unknown.
+    void set_file_memory(Category category, const std::string& type, FileMemory memory);
+    /// Null where it is not known.
+    const FileMemory* file_memory(Category category, const std::string& type) const;
     /// Names in alphabetical order.
     std::vector<std::string> types(Category category) const;
     std::vector<const Manual*> manuals() const;
@@ -53,6 +61,7 @@ class Registry {
     struct Entry {
         Manual manual;
         Factory factory;
+        FileMemory file_memory = {};
     };
     std::map<std::pair<Category, std::string>, Entry> entries_;
 };

@@ -1,6 +1,8 @@
 // Reading VDB files: values, kinds, names, limits, damage.
 #include "media/vdb_grid.h"
 
+#include <filesystem>
+
 #include "core/math/random.h"
 #include "core/objects/error.h"
 #include "tests/media/statistics.h"
@@ -228,4 +230,17 @@ TEST_CASE("real VDB files are read or refused with a reason", "[media][vdb][data
     CHECK(media::load_vdb_grid(*folder + "/arnold-usd/test_2315/data/grids.vdb")->warnings().size() == 1);
     CHECK(tests::vdb_refusal(*folder + "/arnold-usd/test_17642/data/torus01.vdb").find("voxel_fog_density") !=
           std::string::npos);
+}
+
+TEST_CASE("The memory of a grid is known from its file's metadata", "[vdb][memory]") {
+    const tests::GridFolder folder;
+    const std::string path = folder.grid("lump");
+    const double bytes = double(media::load_vdb_grid(path)->bytes());
+    const double foretold = media::vdb_grid_memory(path, "density", 0.0);
+    INFO(bytes << " and " << foretold << " bytes");
+    CHECK(foretold > 0.3 * bytes);
+    CHECK(foretold < 1.5 * bytes);
+    CHECK(media::vdb_grid_memory(path, "density") == double(std::filesystem::file_size(path)));
+    CHECK_THROWS_AS(media::vdb_grid_memory(path, "smoke", 0.0), core::InputError);
+    CHECK_THROWS_AS(media::vdb_grid_memory(folder.file("none.vdb"), "density"), core::InputError);
 }

@@ -23,6 +23,15 @@ struct MeshFile {
 MeshFile read_obj(std::string text, const std::string& path, bool flip_v);
 /// Stanford PLY (ASCII, little- and big-endian binary) from bytes. Throws InputError.
 MeshFile read_ply(std::string_view bytes, const std::string& path, bool flip_v);
+/// Rows that the header of a PLY file declares, where the file is long enough for them.
+struct PlyCounts {
+    std::uint64_t vertices = 0, faces = 0;
+};
+/// By the beginning of the file and its size [B]. Throws InputError.
+PlyCounts count_ply(std::string_view head, std::uint64_t size, const std::string& path);
+/// The least that a shape of this file takes, with Embree's tree [B]; `format` as in load_mesh_as(). Throws
+/// InputError.
+double mesh_file_memory(const std::string& format, const std::string& path);
 /// Mitsuba's format, version 3 or 4: the mesh of that number, from 0. Throws InputError.
 MeshFile read_serialized(std::string_view bytes, const std::string& path, std::int64_t shape_index);
 /// Reads any format of assimp's, in a child process with limits on time (60 s) and memory. Throws InputError.

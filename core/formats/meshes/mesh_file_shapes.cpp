@@ -76,6 +76,9 @@ void register_mesh_files(Registry& registry) {
                          const ParameterList<MeshFileSettings>& rows, const std::string& example) {
         add_type(registry, Category::shape, type, summary, rows, example,
                  [kept, format](const MeshFileSettings& s) { return make_or_reuse(format, s, *kept); });
+        registry.set_file_memory(Category::shape, type, [format](const Properties& p) {
+            return mesh_file_memory(format, p.find_file("filename"));
+        });
     };
     add("obj", "obj",
         "Triangle mesh from a Wavefront OBJ file. Polygons are triangulated; smooth normals are computed "

@@ -55,6 +55,18 @@ class PlyReader {
         return std::move(file_);
     }
 
+    PlyCounts count(std::uint64_t size) {
+        read_header();
+        PlyCounts counts;
+        for (const Element& element : elements_) {
+            const std::uint64_t rows =
+                std::min(element.count, size / std::max<std::size_t>(min_row_size(element), 1));
+            if (element.name == "vertex") counts.vertices = rows;
+            if (element.name == "face") counts.faces = rows;
+        }
+        return counts;
+    }
+
   private:
     [[noreturn]] void fail(const std::string& message) const { throw InputError(message, where_); }
 
@@ -333,6 +345,10 @@ class PlyReader {
 };
 
 }  // namespace
+
+PlyCounts count_ply(std::string_view head, std::uint64_t size, const std::string& path) {
+    return PlyReader(head, path, false).count(size);
+}
 
 MeshFile read_ply(std::string_view bytes, const std::string& path, bool flip_v) {
     return PlyReader(bytes, path, flip_v).read();

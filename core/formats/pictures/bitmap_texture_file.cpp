@@ -49,6 +49,8 @@ void register_bitmap_texture(Registry& registry) {
     <string name="wrap_mode" value="mirror"/>
 </texture>)",
         create_bitmap_texture);
+    registry.set_file_memory(Category::texture, "bitmap",
+                             [](const Properties& p) { return bitmap_memory(p.find_file("filename")); });
 }
 
 }  // namespace mote::core

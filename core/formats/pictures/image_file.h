@@ -33,4 +33,8 @@ std::vector<std::byte> encode_png(int width, int height, std::span<const std::ui
 /// Throws InputError naming the file when it is damaged, larger than `max_pixels` or unreadable.
 Bitmap read_bitmap(const std::string& path, bool raw, std::size_t max_pixels = std::size_t(1) << 28);
 
+/// The least that a texture of this file takes [B], by the header of an OpenEXR or PNG file, else the file's
+/// size. Throws InputError.
+double bitmap_memory(const std::string& path);
+
 }  // namespace mote::core

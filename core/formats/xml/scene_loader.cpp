@@ -78,12 +78,14 @@ std::unique_ptr<Scene> make_scene(SceneDocument document, SceneDefines& defines,
                                   const std::function<void(Scene::Parts&)>& finish) {
     Faults faults;
     prepare(document, defines, registry, options, faults);
+    std::vector<MemoryOfFile> files = memory_of_files(document, registry);
+    if (options.memory) require_memory(files, *options.memory);
     Scene::Parts parts = make_parts(document, registry, file, options.lenient, faults);
     if (finish) finish(parts);
     auto scene = std::make_unique<Scene>(std::move(parts));
     if (options.report)
         *options.report = {document.approximations, document.features,
-                           std::make_shared<const Element>(std::move(document.scene))};
+                           std::make_shared<const Element>(std::move(document.scene)), std::move(files)};
     return scene;
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/formats/xml/file_memory.h"
 #include "core/formats/xml/xml_reader.h"
 #include "core/objects/error.h"
 #include "core/objects/registry.h"
@@ -24,6 +25,7 @@ struct LoadReport {
     std::vector<std::string> approximations;  ///< left out or replaced by leniency, and why
     std::vector<std::string> features;        ///< layers of the first hit that the file requests
     std::shared_ptr<const Element> elements;  ///< of the scene, in today's words, with every -D applied
+    std::vector<MemoryOfFile> files = {};     ///< what files take, by their headers
 };
 
 /// Changes of a scene by the caller, and how strictly it is read.
@@ -41,6 +43,8 @@ struct LoadOptions {
     bool lenient = false;
     /// Number of the frame of a sequence, in file names such as smoke.####.vdb.
     std::optional<int> frame = {};
+    /// Files that need more are refused before one is read; none: not compared.
+    std::optional<MemoryBudget> memory = {};
     LoadReport* report = nullptr;  ///< filled where it is not null
 };
 

@@ -6,7 +6,9 @@
 
 #include "core/formats/pictures/image_file.h"
 #include "core/materials/register_materials.h"
+#include "core/materials/texels.h"
 #include "core/materials/texture_slot.h"
+#include "core/math/random.h"
 #include "core/objects/properties.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
@@ -104,6 +106,39 @@ TEST_CASE("bitmaps with bad values are refused with the first position", "[mater
         CHECK(std::string(e.what()).find("(1, 1)") != std::string::npos);
     }
     CHECK_THROWS_AS(make_bitmap_texture(Bitmap{}), InputError);
+}
+
+TEST_CASE("texels are the bitmap's, in a byte, two or four a number", "[materials][texture][memory]") {
+    constexpr int width = 300, height = 260;
+    constexpr std::size_t count = std::size_t(width) * height;
+    Rng rng(4);
+    for (const std::uint32_t values : {1u, 255u, 256u, 257u, 65536u, 70000u})
+        for (const bool grey : {true, false}) {
+            Bitmap b{width, height, {}};
+            const auto number = [&](std::size_t i) { return 1.0f / float(1 + i % values); };
+            for (std::size_t i = 0; i < count; ++i) {
+                const float x = number(i);
+                b.pixels.push_back(grey ? Rgb(x) : Rgb(x, number(i + 1), number(rng.next_u32())));
+            }
+            b.pixels.front() = Rgb(number(0));
+            const Texels texels(b);
+            bool same = true;
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x)
+                    same &= texels(x, y) == b.pixels[std::size_t(y) * width + std::size_t(x)];
+            CAPTURE(values, grey);
+            CHECK(same);
+            const std::size_t numbers = count * (grey || values == 1 ? 1 : 3);
+            if (values <= 256)
+                CHECK(texels.bytes() == numbers + values * sizeof(float));
+            else if (values <= 65536)
+                CHECK(texels.bytes() == numbers * 2 + values * sizeof(float));
+            else
+                CHECK(texels.bytes() == numbers * 4);
+        }
+    const Bitmap zeros{2, 1, {Rgb(0.0f), Rgb(-0.0f)}};
+    CHECK(std::signbit(Texels(zeros)(1, 0).x));
+    CHECK_FALSE(std::signbit(Texels(zeros)(0, 0).x));
 }
 
 TEST_CASE("a checkerboard has two by two squares in a unit", "[materials][texture]") {
