@@ -15,9 +15,10 @@ enum class GuideParts : std::uint8_t {
 
 /// Samples of training paths.
 struct GuidingSamples {
-    std::vector<GuidingSample> surfaces, media;  ///< incident radiance
-    std::vector<ReflectedSample> reflected_by_surfaces, reflected_by_media;
-    void append(const GuidingSamples& other);  ///< behind these
+    std::vector<GuidingSample> surfaces, media;          ///< incident radiance
+    std::vector<ReflectedSample> reflected_by_surfaces;  ///< radiance that surfaces reflect
+    std::vector<ReflectedSample> reflected_by_media;     ///< radiance that media scatter
+    void append(const GuidingSamples& other);            ///< behind these
 };
 
 /// Guide of what arrives on surfaces and in media, and of what is reflected there.
@@ -44,7 +45,7 @@ class LearnedGuide final : public ScatteringGuide {
     const GuidingField& media() const { return media_; }        ///< what arrives in media
     std::size_t leaves() const;                                 ///< of all fields
 
-    static constexpr int candidates_of_a_segment = 2;
+    static constexpr int candidates_of_a_segment = 2;  ///< candidates(), where vertices are chosen
 
   private:
     bool chooses() const { return parts_ == GuideParts::directions_and_vertices; }

@@ -28,7 +28,7 @@ struct GuidingSample {
 /// A mixture that learns.
 class MixtureFit {
   public:
-    using Sample = GuidingSample;
+    using Sample = GuidingSample;             ///< as SpatialTree needs it
     static constexpr double inherited = 0.5;  ///< by each half of a leaf (SpatialTree)
 
     /// An even mixture, as seen from `pivot`.

@@ -21,25 +21,26 @@ struct ReflectedSample {
 /// Radiance that is expected behind a vertex.
 struct ExpectedRadiance {
     float root_square = 1.0f;  ///< root of the second moment
-    float mean = 1.0f;
-    float indirect = 1.0f;  ///< mean, without next-event estimation at the vertex
-    bool known = false;     ///< false: nothing was learned
+    float mean = 1.0f;         ///< first moment
+    float indirect = 1.0f;     ///< mean, without next-event estimation at the vertex
+    bool known = false;        ///< false: nothing was learned
 };
 
 /// Moments of the samples of a leaf.
 class ReflectedMoments {
   public:
-    using Sample = ReflectedSample;
+    using Sample = ReflectedSample;  ///< as SpatialTree needs it
     /// By each half of a leaf (SpatialTree). Little: they differ where a shaft of light has its border.
     static constexpr double inherited = 0.125;
 
-    explicit ReflectedMoments(const core::Vec3&) {}
+    explicit ReflectedMoments(const core::Vec3&) {}      ///< of no samples, whatever the pivot
     void add(std::span<const ReflectedSample> samples);  ///< a batch
     /// All that was learned so far counts this much.
     void scale(double factor);
     ReflectedMoments moved_to(const core::Vec3&) const { return *this; }  ///< the same everywhere in a leaf
 
     double samples() const { return samples_; }  ///< those without light too
+    /// By all samples so far.
     const ExpectedRadiance& expected() const { return expected_; }
 
   private:

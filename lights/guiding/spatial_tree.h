@@ -22,7 +22,7 @@ namespace mote::lights {
 template <typename Leaf>
 class SpatialTree {
   public:
-    using Sample = typename Leaf::Sample;
+    using Sample = typename Leaf::Sample;  ///< of the leaves
 
     /// Leaves with more than `leaf_samples` samples are split, as long as all fit into `bytes`. Throws
     /// OutOfMemory, naming the tree `what`, where these are not available.
