@@ -46,6 +46,7 @@ class EyePath {
         : scene_(scene),
           lights_(lights ? *lights : scene),
           guide_(guide),
+          chooses_vertices_(Media && guide.candidates() > 0),
           limits_(limits),
           sampler_(eye.sampler),
           ray_(eye.ray) {
@@ -202,7 +203,7 @@ class EyePath {
                     const OnSegment& on_segment);
     bool make_next_vertex(const core::WalkEvent& event);
     bool has_ended() const { return depth_ == limits_.max_depth || scatterings_ == limits_.max_scatterings; }
-    bool chooses_vertices() const { return Media && guide_.candidates() > 0; }
+    bool chooses_vertices() const { return Media && chooses_vertices_; }
     /// Guides have not made the path's weight too large yet (lights::min_guide_ratio).
     bool is_guided() const { return guide_ratio_ >= lights::min_guide_ratio; }
     void choose_vertex(const core::ScatteringPoints& points, core::WalkEvent& event, float u);
@@ -216,6 +217,7 @@ class EyePath {
     const core::Scene& scene_;
     const core::LitScene& lights_;
     const lights::ScatteringGuide& guide_;
+    const bool chooses_vertices_;  ///< by `guide_`
     EyePathLimits limits_;
     core::Sampler sampler_;
     core::Ray ray_;

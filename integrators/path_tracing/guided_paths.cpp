@@ -11,7 +11,8 @@ using lights::GuideParts, lights::GuidingSamples, lights::LearnedGuide;
 
 namespace {
 
-/// Variance times work, over that of unguided paths, from which a guide that continues to learn may still pay.
+/// Variance times work, over that of unguided paths, from which a guide that continues to learn may still
+/// pay.
 constexpr double promising = 1.25;
 
 /// Empties the parts.
@@ -49,15 +50,19 @@ GuidingSamples trace_training_pass(const Scene& scene, const RenderOptions& opti
 template <bool Media>
 GuideTraining<Media>::GuideTraining(const Scene& scene, const RenderOptions& options,
                                     const PathSettings& settings, double ray_work, SharedCounters& counters)
-    : scene_(scene), options_(options), settings_(settings), counters_(counters) {
+    : scene_(scene),
+      options_(options),
+      settings_(settings),
+      counters_(counters),
+      largest_parts_(largest_parts<Media>(scene, settings.guiding.mode)) {
     options_.memory.require(double(settings_.guiding.paths) * double(PathRecorder<Media>::max_bytes) * 2.0,
                             "the samples of a training pass");
-    first_parts_ = largest_parts<Media>(scene_, settings_.guiding.mode);
+    first_parts_ = largest_parts_;
     train();
     const int later = std::max(0, settings_.guiding.passes - first_training_passes);
     if (settings_.guiding.mode == Guiding::automatic) {
         trials_.emplace(scene_, options_, settings_, ray_work, counters_);
-        decide(first_parts_ = trials_->best_of(*guide_, *first_parts_, later > 0 ? promising : 1.0));
+        decide(first_parts_ = trials_->best_of(*guide_, largest_parts_, later > 0 ? promising : 1.0));
     }
     if (first_parts_) picture_passes_ = std::uint32_t(later);
 }
@@ -74,7 +79,7 @@ void GuideTraining<Media>::train() {
     guide_ = std::make_unique<LearnedGuide>(
         lights::GuidingField::Settings{guiding.leaf_samples, guiding.memory * 1048576.0}, Media,
         options_.memory);
-    guide_->decide(largest_parts<Media>(scene_, guiding.mode));
+    guide_->decide(largest_parts_);
     for (std::uint32_t i = 0; i < std::uint32_t(std::min(first_training_passes, guiding.passes)); ++i) {
         const PassOfPaths pass{i, i, std::size_t(guiding.paths)};
         GuidingSamples samples =
@@ -101,8 +106,7 @@ template <bool Media>
 void GuideTraining<Media>::learn(std::vector<GuidingSamples>& tasks) {
     GuidingSamples samples = joined(tasks);
     learn_from(std::uint32_t(first_training_passes) + learned_++, samples);
-    if (trials_ && learned_ == picture_passes_)
-        decide(trials_->best_of(*guide_, largest_parts<Media>(scene_, settings_.guiding.mode), 1.0));
+    if (trials_ && learned_ == picture_passes_) decide(trials_->best_of(*guide_, largest_parts_, 1.0));
 }
 
 template <bool Media>

@@ -53,6 +53,7 @@ class GuideTraining {
     const PathSettings& settings_;
     SharedCounters& counters_;
     std::unique_ptr<lights::LearnedGuide> guide_;
+    const lights::GuideParts largest_parts_;      ///< that a guide can decide in the scene
     std::optional<GuidingTrials<Media>> trials_;  ///< of Guiding::automatic
     /// With which passes of the picture are traced, now and when the first of them is; nothing: unguided.
     std::optional<lights::GuideParts> parts_, first_parts_;

@@ -78,7 +78,8 @@ std::unique_ptr<Scene> make_scene(SceneDocument document, SceneDefines& defines,
                                   const std::function<void(Scene::Parts&)>& finish) {
     Faults faults;
     prepare(document, defines, registry, options, faults);
-    std::vector<MemoryOfFile> files = memory_of_files(document, registry);
+    std::vector<MemoryOfFile> files;  // opens each file, and for grids starts a program
+    if (options.memory || options.report) files = memory_of_files(document, registry);
     if (options.memory) require_memory(files, *options.memory);
     Scene::Parts parts = make_parts(document, registry, file, options.lenient, faults);
     if (finish) finish(parts);
