@@ -14,6 +14,7 @@
 #include "gathering/ray_bundles/grid_steps.h"
 #include "gathering/ray_bundles/imperfect_bundles.h"
 #include "gathering/ray_bundles/projected_triangle.h"
+#include "session/registry.h"
 
 namespace mote::benchmarks {
 namespace {
@@ -186,7 +187,7 @@ void imperfect_bundles_against_exact(benchmark::State& state, const std::string&
         state.SkipWithError("no meshes: run scenes/generate");
         return;
     }
-    const auto scene = load_scene(folder + name + ".xml", make_registry());
+    const auto scene = load_scene(folder + name + ".xml", session::make_registry());
     const SurfaceTriangles triangles = surface_triangles(scene->shapes());
     const BundleTracer tracer(triangles);
     const ImperfectBundles imperfect(triangles, 4096);

@@ -6,9 +6,7 @@
 #include "core/geometry/triangle_mesh.h"
 #include "core/materials/bsdf.h"
 #include "core/objects/properties.h"
-#include "integrators/register_integrators.h"
-#include "lights/register_lights.h"
-#include "media/register_media.h"
+#include "session/registry.h"
 
 namespace mote::benchmarks {
 
@@ -71,17 +69,8 @@ std::shared_ptr<Bsdf> make_bsdf(const Registry& registry, const std::string& typ
 
 }  // namespace
 
-Registry make_registry() {
-    Registry registry;
-    register_core(registry);
-    media::register_media(registry);
-    lights::register_lights(registry);
-    integrators::register_integrators(registry);
-    return registry;
-}
-
 std::unique_ptr<Scene> make_room(const std::string& integrator, int width, int height, bool glossy) {
-    const Registry registry = make_registry();
+    const Registry registry = session::make_registry();
     const std::string frame = fmt::format(R"(<scene version="3.0.0">
     <integrator type="{}"/>
     <sensor type="perspective">

@@ -4,13 +4,9 @@
 
 #include <memory>
 
-#include "core/objects/registry.h"
 #include "core/scene/scene.h"
 
 namespace mote::benchmarks {
-
-/// Every type of mote.
-core::Registry make_registry();
 
 /// The room, its second ball of rough metal where `glossy`; `integrator` is the type of Scene::integrator().
 std::unique_ptr<core::Scene> make_room(const std::string& integrator, int width, int height,

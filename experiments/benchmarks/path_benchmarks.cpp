@@ -6,6 +6,7 @@
 #include "experiments/benchmarks/half_million.h"
 #include "experiments/benchmarks/ray_log.h"
 #include "experiments/benchmarks/turns.h"
+#include "session/registry.h"
 
 namespace mote::benchmarks {
 namespace {
@@ -44,7 +45,7 @@ std::unique_ptr<Scene> cornell_box() {
     LoadOptions options;
     options.integrator = "path";
     options.defines = {{"resx", std::to_string(width)}, {"resy", std::to_string(height)}};
-    return load_scene(MOTE_SOURCE_DIR "/scenes/cornell_box.xml", make_registry(), options);
+    return load_scene(MOTE_SOURCE_DIR "/scenes/cornell_box.xml", session::make_registry(), options);
 }
 
 void path_against_bare_rays(benchmark::State& state, std::unique_ptr<Scene> (*scene)(), double target) {

@@ -15,10 +15,8 @@
 #include "core/math/random.h"
 #include "core/scene/scattering_vertex.h"
 #include "experiments/benchmarks/turns.h"
-#include "integrators/register_integrators.h"
-#include "lights/register_lights.h"
 #include "lights/shadow_maps/volumetric_shadow_map.h"
-#include "media/register_media.h"
+#include "session/registry.h"
 
 namespace mote::benchmarks {
 
@@ -31,12 +29,7 @@ constexpr int width = ShadowLookup::width;
 static_assert(width == ShadowPacket::width);
 
 const Registry& registry() {
-    static const Registry all = [] {
-        Registry r;
-        register_core(r), media::register_media(r), lights::register_lights(r);
-        integrators::register_integrators(r);
-        return r;
-    }();
+    static const Registry all = session::make_registry();
     return all;
 }
 

@@ -20,10 +20,10 @@ bool survives(core::PathWeights& weights, float scale, int depth, float u) {
 }
 
 /// Below this share of the radiance expected of a pixel a path is subject to roulette: the lower end of the
-/// window of Vorba & Křivánek 2016, 2 / (1 + s) with s = 5. Paths above it are not split.
-inline constexpr float roulette_window = 1.0f / 3.0f;
+/// window of Vorba & Křivánek 2016, 2 / (1 + s) with s = 4. Paths above it are not split.
+inline constexpr float roulette_window = 0.4f;
 /// Lower bound of the probability of survival: expectations may be wrong.
-inline constexpr float min_survival = 0.1f;
+inline constexpr float min_survival = 0.25f;
 
 /// survives() by expected contribution: `expected` is the radiance expected behind the vertex over that of
 /// the whole path when it began.

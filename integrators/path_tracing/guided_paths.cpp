@@ -24,7 +24,7 @@ GuidingSamples joined(std::vector<GuidingSamples>& parts) {
 
 /// All that a guide can decide in the scene. Light of media that glow is not sampled along whole segments.
 template <bool Media>
-GuideParts largest_parts(const Scene& scene, Guiding mode) {
+GuideParts largest_parts_in(const Scene& scene, Guiding mode) {
     const auto glows = [](const auto& medium) { return medium->traits().emissive; };
     return !Media || mode == Guiding::directions || std::ranges::any_of(scene.media(), glows)
                ? GuideParts::directions
@@ -34,11 +34,11 @@ GuideParts largest_parts(const Scene& scene, Guiding mode) {
 template <bool Media>
 GuidingSamples trace_training_pass(const Scene& scene, const RenderOptions& options,
                                    const PathSettings& settings, const PassOfPaths& pass,
-                                   const LearnedGuide& guide, SharedCounters& counters) {
+                                   const LearnedGuide& guide, GuideParts largest, SharedCounters& counters) {
     std::vector<GuidingSamples> chunks(pass.chunks());
     trace_pass<Media>(scene, options, settings, pass, guide, counters,
                       [&](std::size_t chunk, std::size_t, EyePacket<Media>& packet) {
-                          PathRecorder<Media> recorder;
+                          PathRecorder<Media> recorder(largest);
                           trace_paths(scene, settings, packet, &recorder);
                           recorder.finish(packet, chunks[chunk]);
                       });
@@ -54,7 +54,7 @@ GuideTraining<Media>::GuideTraining(const Scene& scene, const RenderOptions& opt
       options_(options),
       settings_(settings),
       counters_(counters),
-      largest_parts_(largest_parts<Media>(scene, settings.guiding.mode)) {
+      largest_parts_(largest_parts_in<Media>(scene, settings.guiding.mode)) {
     options_.memory.require(double(settings_.guiding.paths) * double(PathRecorder<Media>::max_bytes) * 2.0,
                             "the samples of a training pass");
     first_parts_ = largest_parts_;
@@ -78,12 +78,11 @@ void GuideTraining<Media>::train() {
     const GuidingSettings& guiding = settings_.guiding;
     guide_ = std::make_unique<LearnedGuide>(
         lights::GuidingField::Settings{guiding.leaf_samples, guiding.memory * 1048576.0}, Media,
-        options_.memory);
-    guide_->decide(largest_parts_);
+        largest_parts_, options_.memory);
     for (std::uint32_t i = 0; i < std::uint32_t(std::min(first_training_passes, guiding.passes)); ++i) {
         const PassOfPaths pass{i, i, std::size_t(guiding.paths)};
         GuidingSamples samples =
-            trace_training_pass<Media>(scene_, options_, settings_, pass, *guide_, counters_);
+            trace_training_pass<Media>(scene_, options_, settings_, pass, *guide_, largest_parts_, counters_);
         learn_from(i, samples);
     }
     decide(first_parts_);

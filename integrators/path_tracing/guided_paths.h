@@ -31,6 +31,8 @@ class GuideTraining {
 
     /// Null: paths are not guided.
     const lights::LearnedGuide* guide() const { return parts_ ? guide_.get() : nullptr; }
+    /// All that a guide can decide in the scene: what has to be recorded.
+    lights::GuideParts largest_parts() const { return largest_parts_; }
     /// Passes of the picture that it has learned from.
     std::uint32_t learned() const { return learned_; }
     /// Passes of the picture that it learns from in all.
@@ -53,7 +55,7 @@ class GuideTraining {
     const PathSettings& settings_;
     SharedCounters& counters_;
     std::unique_ptr<lights::LearnedGuide> guide_;
-    const lights::GuideParts largest_parts_;      ///< that a guide can decide in the scene
+    const lights::GuideParts largest_parts_;
     std::optional<GuidingTrials<Media>> trials_;  ///< of Guiding::automatic
     /// With which passes of the picture are traced, now and when the first of them is; nothing: unguided.
     std::optional<lights::GuideParts> parts_, first_parts_;

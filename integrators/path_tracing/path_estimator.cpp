@@ -69,7 +69,7 @@ class PathEstimator final : public Estimator {
     bool trace_and_learn(ImageLoop<Media>& loop, const PassContext& context, PassImage& image) {
         std::vector<lights::GuidingSamples> samples(loop.tasks());
         const bool done = loop.run(context, image, eye(), [&](EyeTask<Media>& task) {
-            PathRecorder<Media> recorder;
+            PathRecorder<Media> recorder(training_->largest_parts());
             const bool records = training_->records(context.index, task.index());
             trace_packets(task, records ? &recorder : nullptr, &samples[task.index()]);
         });

@@ -17,6 +17,11 @@ class PathRecorder {
     using Packet = EyePacket<Media>;
     using Lane = typename Packet::Lane;
 
+    /// `largest`: all that the guide will ever decide; what vertices reflect is recorded where it chooses
+    /// them.
+    explicit PathRecorder(lights::GuideParts largest)
+        : chooses_(Media && largest == lights::GuideParts::directions_and_vertices) {}
+
     /// Before a segment of a lane makes its vertex.
     void on_segment(int i, const Lane& lane, const EyeSegment& segment) {
         const core::ScatteringVertex& left = lane.path->vertex();
@@ -39,7 +44,7 @@ class PathRecorder {
     /// After a segment of a lane, before its vertex, if any, is connected to lights.
     void on_arrival(int i, const Lane& lane) {
         Path& path = paths_[std::size_t(i)];
-        path.at_record = Media && lane.alive && path.reflected.size() < max_records;
+        path.at_record = chooses_ && lane.alive && path.reflected.size() < max_records;
         if (!path.at_record) return;
         // A guide may have chosen a vertex before the end of the segment.
         const float inverse_distance = 1.0f / lane.path->segment_length();
@@ -117,6 +122,7 @@ class PathRecorder {
         return sum / 3.0f;
     }
 
+    bool chooses_;
     std::array<Path, Packet::width> paths_;
 };
 

@@ -42,7 +42,9 @@ bool come_through(const LitScene& scene, const ScatteringVertex& vertex, const L
             });
         if (how.passes_media)
             return attenuate(scene, ray, start, weights, [&](const Medium& m, const Ray& r) {
-                return m.transmittance(r, context.rng, context.tracking);
+                PathWeights passed;  // as unguided paths connect: few lookups, and no less noise is needed
+                m.connect(r, passed, context.rng, context.tracking);
+                return passed.throughput;
             });
         const Medium* there = scene.connect(ray, start, weights, context.rng, context.tracking);
         return !c.light.inside || there == c.light.inside;

@@ -12,15 +12,22 @@ namespace {
 /// few moments need fewer.
 constexpr double reflected_share = 0.25, reflected_samples = 1.0 / 40.0, min_reflected_samples = 128.0;
 
-/// With media they and surfaces have half of the memory each, and a share of it is for reflected radiance.
-/// Surfaces alone have all of it for directions.
-GuidingField::Settings field_settings(const GuidingField::Settings& s, bool media, bool for_media) {
-    const double share = media ? 0.5 * (1.0 - reflected_share) : for_media ? 0.0 : 1.0;
+/// Shares of the memory for each field of directions and of reflected radiance. With media they and surfaces
+/// have half of it each, and a share of that is for reflected radiance where vertices are chosen. Surfaces
+/// alone have all of it for directions.
+struct Shares {
+    double surfaces = 1.0, media = 0.0, reflected = 0.0;
+};
+Shares shares_of(bool media, GuideParts largest) {
+    if (!media) return {};
+    const double reflected = largest == GuideParts::directions_and_vertices ? 0.5 * reflected_share : 0.0;
+    return {0.5 - reflected, 0.5 - reflected, reflected};
+}
+GuidingField::Settings with_share(const GuidingField::Settings& s, double share) {
     return {s.leaf_samples, s.bytes * share};
 }
-ReflectedField reflected_field(const GuidingField::Settings& s, bool media, const MemoryBudget& memory) {
-    return {std::max(min_reflected_samples, reflected_samples * s.leaf_samples),
-            media ? s.bytes * 0.5 * reflected_share : 0.0, memory};
+ReflectedField reflected_field(const GuidingField::Settings& s, double share, const MemoryBudget& memory) {
+    return {std::max(min_reflected_samples, reflected_samples * s.leaf_samples), s.bytes * share, memory};
 }
 
 template <typename Sample>
@@ -36,11 +43,13 @@ void GuidingSamples::append(const GuidingSamples& o) {
     append_to(reflected_by_media, o.reflected_by_media);
 }
 
-LearnedGuide::LearnedGuide(const GuidingField::Settings& settings, bool media, const MemoryBudget& memory)
-    : surfaces_(field_settings(settings, media, false), memory),
-      media_(field_settings(settings, media, true), memory),
-      reflected_by_surfaces_(reflected_field(settings, media, memory)),
-      reflected_by_media_(reflected_field(settings, media, memory)) {}
+LearnedGuide::LearnedGuide(const GuidingField::Settings& settings, bool media, GuideParts largest,
+                           const MemoryBudget& memory)
+    : surfaces_(with_share(settings, shares_of(media, largest).surfaces), memory),
+      media_(with_share(settings, shares_of(media, largest).media), memory),
+      reflected_by_surfaces_(reflected_field(settings, shares_of(media, largest).reflected, memory)),
+      reflected_by_media_(reflected_field(settings, shares_of(media, largest).reflected, memory)),
+      parts_(largest) {}
 
 void LearnedGuide::add(GuidingSamples& samples) {
     surfaces_.add(samples.surfaces), media_.add(samples.media);

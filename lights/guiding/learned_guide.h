@@ -24,14 +24,15 @@ struct GuidingSamples {
 /// Guide of what arrives on surfaces and in media, and of what is reflected there.
 class LearnedGuide final : public ScatteringGuide {
   public:
-    /// Throws OutOfMemory where the fields do not fit.
-    LearnedGuide(const GuidingField::Settings& settings, bool media, const core::MemoryBudget& memory);
+    /// `largest`: all that it will ever decide. Throws OutOfMemory where the fields do not fit.
+    LearnedGuide(const GuidingField::Settings& settings, bool media, GuideParts largest,
+                 const core::MemoryBudget& memory);
 
     /// Learns from a batch, in its order; it is sorted.
     void add(GuidingSamples& samples);
     /// All that was learned so far counts this much.
     void scale(double factor);
-    /// From now on. Vertices of scenes without media are not chosen.
+    /// From now on; `largest` at first. Vertices of scenes without media are not chosen.
     void decide(GuideParts parts) { parts_ = parts; }
 
     /// Sets `lobes` to the product at the vertex.
@@ -45,14 +46,14 @@ class LearnedGuide final : public ScatteringGuide {
     const GuidingField& media() const { return media_; }        ///< what arrives in media
     std::size_t leaves() const;                                 ///< of all fields
 
-    static constexpr int candidates_of_a_segment = 2;  ///< candidates(), where vertices are chosen
+    static constexpr int candidates_of_a_segment = 1;  ///< candidates(), where vertices are chosen
 
   private:
     bool chooses() const { return parts_ == GuideParts::directions_and_vertices; }
 
     GuidingField surfaces_, media_;
     ReflectedField reflected_by_surfaces_, reflected_by_media_;
-    GuideParts parts_ = GuideParts::directions;
+    GuideParts parts_;
 };
 
 }  // namespace mote::lights

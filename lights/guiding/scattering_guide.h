@@ -34,11 +34,12 @@ class ScatteringGuide {
 /// Adds none.
 const ScatteringGuide& no_guide();
 
-/// Probability that a guide chooses the direction, where it has lobes.
-inline constexpr float guide_probability = 0.5f;
+/// Probability that a guide chooses the direction, where it has lobes. Less than half: what the lobes lack is
+/// found too seldom else, vertex after vertex, by rare bright paths (docs/methods/guiding.md).
+inline constexpr float guide_probability = 0.35f;
 
 /// A path whose directions the guide chose so much more seldom than the vertices is guided no further: each
-/// vertex may double its weight against that of an unguided one, and long paths would become fireflies.
+/// vertex may raise its weight to 1.5 times that of an unguided one, and long paths would become fireflies.
 inline constexpr float min_guide_ratio = 0.25f;
 
 /// Bound of GuidedSample::pdf_ratio, where a direction of the guide is hardly one of the vertex.

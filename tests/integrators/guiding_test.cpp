@@ -142,7 +142,7 @@ TEST_CASE("A guide of any directions keeps the mean; a density that is not its o
     const auto any = render_statistics(*scene, PathsOf(AnyGuide(1.0f)), {4, 1500, 2});
     check_same_mean(any, "beauty", reference, "beauty", {1.1});
     // Planted: lobes without their weight in the density.
-    auto wrong = render_statistics(*scene, PathsOf(AnyGuide(1.3f)), {4, 1500, 2});
+    auto wrong = render_statistics(*scene, PathsOf(AnyGuide(1.5f)), {4, 1500, 2});
     wrong.planted = true;
     CHECK_FALSE(same_mean(wrong, "beauty", reference, "beauty", OnFailure::nothing).passed);
 }

@@ -181,7 +181,8 @@ TEST_CASE("A guided density is that of both techniques together", "[guiding]") {
     Rng rng(6);
     const VmfMixture m = some_mixture(rng, 3.0f);
     const Vec3 w = direction(rng);
-    CHECK(guided_pdf(m, w, 0.3f) == Approx(0.15f + 0.5f * m.pdf_solid_angle(w)));
-    CHECK(guided_pdf(m, w, 0.0f, 2.0f) == Approx(m.pdf_solid_angle(w)));
+    const float p = guide_probability, lobes = m.pdf_solid_angle(w);
+    CHECK(guided_pdf(m, w, 0.3f) == Approx(0.3f * (1.0f - p) + p * lobes));
+    CHECK(guided_pdf(m, w, 0.0f, 2.0f) == Approx(2.0f * p * lobes));
     CHECK(guided_pdf(VmfMixture{}, w, 0.3f) == 0.3f);
 }

@@ -10,14 +10,11 @@
 
 #include "core/film/image_channels.h"
 #include "core/formats/pictures/image_file.h"
-#include "core/formats/register_formats.h"
 #include "core/formats/xml/scene_loader.h"
 #include "core/render/pass_runner.h"
 #include "integrators/path_tracing/guided_paths.h"
-#include "integrators/register_integrators.h"
 #include "lights/guiding/choose_scattering.h"
-#include "lights/register_lights.h"
-#include "media/register_media.h"
+#include "session/registry.h"
 
 namespace {
 
@@ -34,12 +31,9 @@ struct Arguments {
 };
 
 std::unique_ptr<Scene> load(const Arguments& a) {
-    Registry registry;
-    register_core(registry), media::register_media(registry);
-    lights::register_lights(registry), register_integrators(registry);
     LoadOptions options;
     options.defines = {{"film.width", std::to_string(a.width)}, {"film.height", std::to_string(a.height)}};
-    return load_scene(a.scene, registry, options);
+    return load_scene(a.scene, session::make_registry(), options);
 }
 
 /// Averages value(random numbers, sample) over samples of every pixel.

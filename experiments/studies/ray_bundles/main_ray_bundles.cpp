@@ -13,9 +13,7 @@
 #include "gathering/ray_bundles/bundle_directions.h"
 #include "gathering/ray_bundles/bundle_tracer.h"
 #include "gathering/ray_bundles/imperfect_bundles.h"
-#include "integrators/register_integrators.h"
-#include "lights/register_lights.h"
-#include "media/register_media.h"
+#include "session/registry.h"
 
 namespace {
 
@@ -48,13 +46,6 @@ double memory_of(const std::string& which) {
     return 0.0;
 }
 void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
-
-std::unique_ptr<core::Scene> load(const std::string& file) {
-    core::Registry registry;
-    core::register_core(registry), media::register_media(registry);
-    lights::register_lights(registry), integrators::register_integrators(registry);
-    return core::load_scene(file, registry);
-}
 
 BundleForm form_of(const std::string& name) {
     if (name == "rays") return BundleForm::rays;
@@ -123,7 +114,7 @@ int main(int argc, char** argv) {
     try {
         const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                           std::size_t(a.threads));
-        const auto scene = load(a.scene);
+        const auto scene = core::load_scene(a.scene, session::make_registry());
         const SurfaceTriangles triangles = surface_triangles(scene->shapes());
         std::cerr << triangles.size() << " triangles\n";
         const BundleTracer tracer(triangles);

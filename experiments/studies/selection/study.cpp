@@ -6,12 +6,10 @@
 
 #include "core/formats/xml/scene_loader.h"
 #include "integrators/eye_path/eye_ray.h"
-#include "integrators/register_integrators.h"
 #include "integrators/virtual_point_lights/path_receivers.h"
-#include "lights/register_lights.h"
 #include "lights/selection/register_selection.h"
 #include "lights/virtual_lights/particle_tracer.h"
-#include "media/register_media.h"
+#include "session/registry.h"
 
 namespace mote::studies {
 
@@ -63,12 +61,9 @@ std::shared_ptr<const lights::Selection> selection_of(const std::string& text) {
 namespace {
 
 std::unique_ptr<core::Scene> load(const Arguments& a) {
-    core::Registry registry;
-    core::register_core(registry), media::register_media(registry);
-    lights::register_lights(registry), integrators::register_integrators(registry);
     core::LoadOptions options;
     options.defines = {{"resx", std::to_string(a.width)}, {"resy", std::to_string(a.height)}};
-    return core::load_scene(a.scene, registry, options);
+    return core::load_scene(a.scene, session::make_registry(), options);
 }
 
 }  // namespace
