@@ -18,6 +18,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "experiments/figures"))
 import plotting
+from claims import Claims
 from exr import read_exr
 from origin import table_of
 from renders import main, write_csv
@@ -26,6 +27,7 @@ FIGURES = ROOT / "experiments/figures/scenes"
 SCENES = {"smoke room": ROOT / "scenes/smoke_room.xml", "atrium": ROOT / "scenes/atrium.xml", "fog": FIGURES / "glass_in_fog.xml",
           "city": ROOT / "scenes/city.xml", "door ajar": FIGURES / "door_ajar.xml", "lamp under a shade": FIGURES / "lamp_shade.xml"}
 METHODS = {"volpath": "off", "volpath guided": "automatic"}
+LEAST_GAIN = 0.9
 POINT = (2.3, 1.2, 2.0)  # in the smoke room's medium: what has been learned there is shown
 
 
@@ -45,36 +47,55 @@ def variance(pictures, mean):
     return terms.sum() / whole, terms[: len(terms) - len(terms) // 100].sum() / whole
 
 
+def runs_of(mote, scene, tag, settings, seconds, seed):
+    """A short and a long render. The short one says how many passes the long one has: training makes pilots of few passes slow."""
+    short = mote.render_for(seconds[0], SCENES[scene], f"{tag}_{seconds[0]}", settings, seed, pilot=tag)
+    of_a_pass = (short.cpu - mote.pilots[tag][0]) / max(1, short.passes - 1)
+    passes = max(2, round(short.passes + (seconds[1] - short.cpu) / max(of_a_pass, 1e-3)))
+    return short, mote.render(SCENES[scene], f"{tag}_{seconds[1]}", settings, passes, seed, threads=1)
+
+
 def study(mote, scene, quick):
     """Rows of the table."""
+    seconds = (0.2, 0.5) if quick else (30, 120)
     size = {"film.width": 24 if quick else 320, "film.height": 16 if quick else 200, "integrator": "volpath"}
     runs = {}
     for method, guiding in METHODS.items():
         settings = size | {"integrator.guiding": guiding} | ({"integrator.guiding_paths": 256} if quick else {})
-        for seconds in (0.2, 0.5) if quick else (30, 120):
-            tag = f"{scene} {method}".replace(" ", "_")
-            runs[method, seconds] = [mote.render_for(seconds, SCENES[scene], f"{tag}_{seconds}", settings, seed, pilot=tag)
-                                     for seed in (1, 2)]
-    longest = max(seconds for _, seconds in runs)
-    mean = np.mean([p[""] for (_, seconds), pictures in runs.items() if seconds == longest for p in pictures], axis=0)
+        pairs = [runs_of(mote, scene, f"{scene} {method}".replace(" ", "_"), settings, seconds, seed) for seed in (1, 2)]
+        runs |= {(method, s): pictures for s, pictures in zip(seconds, zip(*pairs))}
+    mean = np.mean([p[""] for method in METHODS for p in runs[method, seconds[1]]], axis=0)
     rows = []
-    for (method, seconds), pictures in runs.items():
+    for (method, target), pictures in runs.items():
         values = variance(np.stack([p[""] for p in pictures]), mean)
         statistics = [p.statistics for p in pictures]
         average = lambda of: float(np.mean([of(s) for s in statistics]))
-        rows.append([scene, method, seconds, float(np.mean([p.cpu for p in pictures])), average(lambda s: s["passes"]),
+        rows.append([scene, method, target, float(np.mean([p.cpu for p in pictures])), average(lambda s: s["passes"]),
                      average(lambda s: s["seconds"].get("guiding", 0.0)), average(lambda s: s["values"].get("guided", 0.0)),
                      average(lambda s: s["values"].get("guided_vertices", 0.0)), *map(math.sqrt, values)])
     return rows
 
 
-def say(rows):
-    for scene in dict.fromkeys(row[0] for row in rows):
-        of = {row[1]: row for row in rows if row[0] == scene and row[2] == max(r[2] for r in rows)}
-        plain, guided = of["volpath"], of["volpath guided"]
-        gains = [(plain[k] / guided[k]) ** 2 * plain[3] / guided[3] for k in (8, 9)]
-        print(f"{scene:20} gain {gains[0]:.2f}, trimmed {gains[1]:.2f}; error {plain[8]:.1%}, {guided[8]:.1%}; passes {plain[4]:.0f}, "
-              f"{guided[4]:.0f}; training {guided[5]:.1f} s; guided {guided[6]:.0%}, vertices {guided[7]:.0%}", flush=True)
+def longest_runs(rows, scene):
+    """Rows of the unguided and of the guided run, and the gain: of all pixels, and trimmed."""
+    of = {row[1]: row for row in rows if row[0] == scene and row[2] == max(r[2] for r in rows)}
+    plain, guided = of["volpath"], of["volpath guided"]
+    return plain, guided, [(plain[k] / guided[k]) ** 2 * plain[3] / guided[3] for k in (8, 9)]
+
+
+def say(rows, scene):
+    plain, guided, gains = longest_runs(rows, scene)
+    print(f"{scene:20} gain {gains[0]:.2f}, trimmed {gains[1]:.2f}; error {plain[8]:.1%}, {guided[8]:.1%}; passes {plain[4]:.0f}, "
+          f"{guided[4]:.0f}; training {guided[5]:.1f} s; guided {guided[6]:.0%}, vertices {guided[7]:.0%}", flush=True)
+
+
+def check_gains(rows, scenes):
+    claims = Claims()
+    for scene in scenes:
+        gain, trimmed = longest_runs(rows, scene)[2]
+        claims.check(f"{scene}: variance times seconds is at most 1 / {LEAST_GAIN} of that without guides",
+                     f"gain {gain:.2f}, trimmed {trimmed:.2f}", gain >= LEAST_GAIN)
+    return claims.exit_code()
 
 
 def draw_field(mote, quick):
@@ -121,11 +142,11 @@ def run(mote, quick, output):
     rows = []
     for scene in list(SCENES)[:2 if quick else None]:
         rows += study(mote, scene, quick)
-        say(rows[-4:])
+        say(rows[-4:], scene)
     header = ["scene", "method", "target_seconds", "seconds", "passes", "training_seconds", "guided", "vertices", "relative_rmse", "trimmed"]
     write_csv(output.with_suffix(".csv"), header, rows)
     plot_table(output.with_suffix(".csv"), output.with_suffix(".png"), draw_field(mote, quick))
-    return 0
+    return 0 if quick else check_gains(rows, SCENES)
 
 
 if __name__ == "__main__":

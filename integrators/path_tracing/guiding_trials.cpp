@@ -1,5 +1,7 @@
 #include "integrators/path_tracing/guiding_trials.h"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/render/counted_work.h"
@@ -18,6 +20,15 @@ double work_of(Statistics s, double ray_work) {
     const double collisions = double(s.lookups["collisions"]);
     s.lookups.clear();
     return ray_work * counted_work(s) + collision * collisions;
+}
+
+/// Sum without the share of terms that are largest: a trial is short, and one bright path in a few hundred
+/// would decide it.
+double sum_without_outliers(std::vector<double> terms) {
+    constexpr double outliers = 0.002;
+    const auto kept = terms.begin() + std::ptrdiff_t(double(terms.size()) * (1.0 - outliers));
+    std::nth_element(terms.begin(), kept, terms.end());
+    return std::accumulate(terms.begin(), kept, 0.0);
 }
 
 }  // namespace
@@ -63,26 +74,24 @@ double GuidingTrials<Media>::Trial::variance(std::size_t path) const {
 template <bool Media>
 std::array<double, 2> GuidingTrials<Media>::relative_variances(const Trial& plain, const Trial& guided) {
     constexpr std::size_t run = 256;
-    std::vector<std::array<double, 3>> runs;  // mean of both kinds, variances
-    for (std::size_t first = 0; first < plain.light.front().size(); first += run) {
-        const std::size_t end = std::min(first + run, plain.light.front().size());
-        auto& [mean, without, with] = runs.emplace_back();
-        for (std::size_t i = first; i < end; ++i) {
+    const std::size_t paths = plain.light.front().size();
+    std::vector<double> means;  // of the runs
+    for (std::size_t first = 0; first < paths; first += run) {
+        const std::size_t end = std::min(first + run, paths);
+        double& mean = means.emplace_back(0.0);
+        for (std::size_t i = first; i < end; ++i)
             for (std::uint32_t k = 0; k < passes; ++k)
                 mean += double(plain.light[k][i]) + double(guided.light[k][i]);
-            without += plain.variance(i), with += guided.variance(i);
-        }
         mean /= 2.0 * passes * double(end - first);
     }
-    double whole = 0.0;
-    for (const auto& r : runs) whole += r[0] / double(runs.size());
-    std::array<double, 2> sums{};
-    for (const auto& [mean, without, with] : runs) {
-        if (!(mean > 0.0)) continue;
-        const double weight = 1.0 / (mean * mean + 0.01 * whole * whole);
-        sums[0] += weight * without, sums[1] += weight * with;
+    const double whole = std::accumulate(means.begin(), means.end(), 0.0) / double(means.size());
+    std::vector<double> without, with;
+    for (std::size_t i = 0; i < paths; ++i) {
+        if (!(means[i / run] > 0.0)) continue;
+        const double weight = 1.0 / (sqr(means[i / run]) + 0.01 * whole * whole);
+        without.push_back(weight * plain.variance(i)), with.push_back(weight * guided.variance(i));
     }
-    return sums;
+    return {sum_without_outliers(std::move(without)), sum_without_outliers(std::move(with))};
 }
 
 template <bool Media>
