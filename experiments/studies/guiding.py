@@ -127,10 +127,10 @@ def plot_table(table, path, field):
     axes[0].legend(fontsize=10, frameon=False)
     light = field["light"] / np.mean(field["light"])
     for ax, picture, title, top in zip(axes[-3:], (field["guide"] - field["extinction"], field["lobes"] * 4 * np.pi, light),
-                                       ("scattering: guided - extinction", "directions learned at a point", "light that arrives there"),
+                                       ("where rays scatter", "learned at a point", "light that arrives there"),
                                        (None, 4.0, 4.0)):
         if top is None:
-            plotting.difference(ax, picture, 0.5, "difference of probabilities")
+            plotting.difference(ax, picture, 0.5, "guided - extinction")
         else:
             ax.imshow(picture, cmap="gray", vmin=0.0, vmax=top, interpolation="nearest", aspect="auto")
             ax.set(xticks=[], yticks=[])
