@@ -35,7 +35,7 @@ class ScatteringGuide {
 const ScatteringGuide& no_guide();
 
 /// Probability that a guide chooses the direction, where it has lobes. Less than half: what the lobes lack is
-/// found too seldom else, vertex after vertex, by rare bright paths (docs/methods/guiding.md).
+/// found too seldom else, vertex after vertex, by rare bright paths.
 inline constexpr float guide_probability = 0.35f;
 
 /// A path whose directions the guide chose so much more seldom than the vertices is guided no further: each

@@ -138,11 +138,11 @@ TEST_CASE("Guided paths keep the mean in a heterogeneous medium", "[guiding][equ
 TEST_CASE("A guide of any directions keeps the mean; a density that is not its own does not", "[guiding]") {
     const auto scene = scene_from(box(mixed, forward_fog), 8);
     const auto reference =
-        render_statistics(*scene, *integrator_from(R"(<integrator type="volpath"/>)"), {4, 1500, 1});
-    const auto any = render_statistics(*scene, PathsOf(AnyGuide(1.0f)), {4, 1500, 2});
+        render_statistics(*scene, *integrator_from(R"(<integrator type="volpath"/>)"), {4, 3100, 1});
+    const auto any = render_statistics(*scene, PathsOf(AnyGuide(1.0f)), {4, 3100, 2});
     check_same_mean(any, "beauty", reference, "beauty", {1.1});
-    // Planted: lobes without their weight in the density.
-    auto wrong = render_statistics(*scene, PathsOf(AnyGuide(1.5f)), {4, 1500, 2});
+    // Planted: lobes without their weight in the density. Its share is guide_probability: so many passes.
+    auto wrong = render_statistics(*scene, PathsOf(AnyGuide(1.3f)), {4, 3100, 2});
     wrong.planted = true;
     CHECK_FALSE(same_mean(wrong, "beauty", reference, "beauty", OnFailure::nothing).passed);
 }
