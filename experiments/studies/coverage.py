@@ -2,8 +2,8 @@
 """How often the stated interval of 95 % contains the true error of an image (docs/testing.md, "Error with the bias of filters").
 
 Usage: coverage.py [--mote build/release/bin/mote] [--scenes A,B] [--methods "A;B"] [--seeds N] [--passes N] [--error E]
-                   [--references FOLDER] [--reference-passes N] [--threads N] [--csv FILE] [--cost] [--quick]
-Renders each scene at 96 x 64 pixels with many seeds and compares each image, by `mote compare`, with a long reference of
+                   [--references FOLDER] [--reference-passes N] [--size WxH] [--threads N] [--csv FILE] [--cost] [--quick]
+Renders each scene (at 96 x 64 pixels without --size) with many seeds and compares each image, by `mote compare`, with a long reference of
 another seed, whose noise is subtracted (with two references the weights are those of neighbours, another measure where small
 lamps are in view). Prints for every scene and method the share of seeds whose
 interval contains the true error, how many miss it on either side, true error and ends of the interval (root mean squares over
@@ -27,7 +27,6 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FILM = ["-D", "film.width=96", "-D", "film.height=64"]
 SCENES = ("cornell_box", "window", "statue", "smoke_room", "fog_grille", "mist", "atrium", "city", "tree", "cloud")
 METHODS = {
     "layers, own filter": ("mote_layers", {"filter": "own"}),
@@ -60,10 +59,11 @@ def render(args, scene, method, rule, seed, output, interval=True):
     stats = output.with_suffix(".json")
     nested = settings.get("nested")
     file = scene_with(scene, nested, output.parent) if nested else ROOT / f"scenes/{scene}.xml"
-    defines = [x for k, v in settings.items() if k != "nested" for x in ("-D", f"integrator.{k}={v}")]
+    defines = {f"integrator.{k}": v for k, v in settings.items() if k != "nested"}
+    defines |= {"film.width": args.size[0], "film.height": args.size[1], "film.interval": str(interval).lower()}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run([args.mote, "render", file, "--integrator", integrator, "-t", str(args.threads),
-                    "--quiet", *FILM, "-D", f"film.interval={str(interval).lower()}", *rule, "--seed", str(seed), *defines,
+                    "--quiet", *rule, "--seed", str(seed), *(x for k, v in defines.items() for x in ("-D", f"{k}={v}")),
                     "-o", output, "--stats", stats], check=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -76,7 +76,7 @@ def true_error(args, image, reference):
 
 
 def reference_of(args, scene, folder):
-    file = folder / f"{scene}.exr"
+    file = folder / f"{scene}_{args.size[0]}x{args.size[1]}.exr"
     if not file.exists():
         render(args, scene, ("mote_layers", {"filter": "none"}), ["--passes", str(args.reference_passes)], 1000001, file)
     return file
@@ -151,6 +151,8 @@ def main():
     parser.add_argument("--error", type=float)
     parser.add_argument("--references", type=Path, help="folder of references, made where they are missing")
     parser.add_argument("--reference-passes", type=int, default=8192)
+    parser.add_argument("--size", type=lambda text: tuple(int(n) for n in text.split("x")), default=(96, 64), metavar="WxH",
+                        help="of the pictures, in pixels")
     parser.add_argument("--threads", type=int, default=0)
     parser.add_argument("--csv", type=Path)
     parser.add_argument("--cost", action="store_true", help="error and time with halves over those without, at equal passes")
