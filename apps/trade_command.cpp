@@ -87,7 +87,7 @@ void add_trade(CLI::App& app, TradeArguments& a, std::function<int()>& action) {
         ->type_name("EXR");
     command
         .add_option("--methods", s.methods,
-                    "Integrators and settings (see docs/guide.md; default: what suits the scene)")
+                    "Integrators and settings (see docs/howto/trade.md; default: what suits the scene)")
         ->type_name("JSON");
     command.add_option("-o,--output", s.output, "The folder to write (default: SCENE_trade)")
         ->type_name("DIR");

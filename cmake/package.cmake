@@ -56,6 +56,7 @@ endif()
 set(mote_helper_folder ${CMAKE_INSTALL_LIBEXECDIR}/mote)
 install(TARGETS mote_grid_reader RUNTIME DESTINATION ${mote_helper_folder} COMPONENT mote)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT mote)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)
 
 # ---- Libraries and headers
 install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} \"-DSOURCE=${PROJECT_SOURCE_DIR}\" \"-DOUT=${mote_include}\"

@@ -57,7 +57,8 @@ std::string text_table(const Results& results) {
             "\nThe reference has a noise of {:.2g} %, which is subtracted; it judges errors down to {:.2g} "
             "%.\n"
             "+-: one standard error; of the error by the reference's noise{}.\n"
-            "(!): more than three standard errors. Error, bias and noise: docs/testing.md.\n",
+            "(!): more than three standard errors, the reference's own among them. Error, bias and noise: "
+            "docs/testing.md.\n",
             100.0 * reference.value("noise", 0.0), 100.0 * results.judge.floor,
             several ? " and the spread of the seeds" : "");
     else

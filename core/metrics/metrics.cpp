@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/math/trimmed_sum.h"
 #include "core/metrics/relative_error.h"
 
 namespace mote::core {
@@ -76,9 +77,8 @@ void make_all_nan(ImageMetrics& m) {
 
 // `values`: relative squared error per pixel.
 double trimmed_mean(std::vector<double> values) {
-    const std::size_t kept = values.size() - values.size() / 1000;
-    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(kept - 1), values.end());
-    return std::accumulate(values.begin(), values.begin() + std::ptrdiff_t(kept), 0.0) / double(kept);
+    const std::size_t left_out = values.size() / 1000;
+    return sum_without_largest(values, left_out) / double(values.size() - left_out);
 }
 
 void add_errors(std::span<const Rgb> image, std::span<const Rgb> reference, ImageMetrics& m) {

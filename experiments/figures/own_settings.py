@@ -50,10 +50,23 @@ class OwnSettings:
 
     def parameters(self, integrator):
         """Names of an integrator's parameters, from its manual page."""
+        return re.findall(r"^\| `(\w+)` \|", self.manual().get(integrator, ""), re.M)
+
+    def manual(self):
+        """Pages of all integrators."""
         if self.pages is None:
             formats = subprocess.run([self.program, "formats"], check=True, capture_output=True, text=True).stdout
             self.pages = dict(re.findall(r"^### `(mote_\w+|path|volpath)`$(.*?)(?=^##)", formats, re.M | re.S))
-        return re.findall(r"^\| `(\w+)` \|", self.pages.get(integrator, ""), re.M)
+        return self.pages
+
+    def check_names(self, files):
+        """Raises ValueError, before the first render, for names that are in none of the files as $NAME and that no integrator has."""
+        text = "".join(file.read_text(encoding="utf-8") for file in files)
+        known = {name for page in self.manual() for name in self.parameters(page)} if self.values else set()
+        unknown = [f"--{name}" for name in self.values
+                   if "." not in name and name not in known and not re.search(rf"\${re.escape(name)}\b", text)]
+        if unknown:
+            raise ValueError(f"there is no {', '.join(unknown)}: neither a $parameter of a scene nor one of an integrator")
 
     def check(self):
         """Raises ValueError for settings that were not taken."""

@@ -207,6 +207,7 @@ def main(script, documentation, figure):
     origin = Origin(script, options.quick)
     try:
         options.own = OwnSettings(words, options.bin / "mote")
+        options.own.check_names([Path(script), *(ROOT / "scenes").glob("*.xml"), *Path(__file__).parent.glob("scenes/*.xml")])
         name = Path(script).stem + options.own.suffix()
         mote = Mote(options, name + ("_quick" if options.quick else ""), origin)
         subprocess.run([ROOT / "scenes" / "generate", options.bin], stdout=subprocess.DEVNULL, check=True)
@@ -216,12 +217,12 @@ def main(script, documentation, figure):
     begin = time.monotonic()
     # Beside a full run, a quick one leaves its pictures alone.
     output = options.output / (name + ("_quick" if options.quick else ""))
-    code = figure(mote, options.quick, output)
     try:
+        code = figure(mote, options.quick, output)
         options.own.check()
-    except ValueError as error:
+    except (ValueError, subprocess.CalledProcessError) as error:
         print(error, file=sys.stderr)
         return 2
     finish(origin, output)
-    print(f"{time.monotonic() - begin:.0f} s")
+    print(f"{time.monotonic() - begin:.0f} s: {output}.csv, {output.name}.png")
     return code

@@ -76,6 +76,7 @@ def true_error(args, image, reference):
 
 
 def reference_of(args, scene, folder):
+    folder.mkdir(parents=True, exist_ok=True)
     file = folder / f"{scene}_{args.size[0]}x{args.size[1]}.exr"
     if not file.exists():
         render(args, scene, ("mote_layers", {"filter": "none"}), ["--passes", str(args.reference_passes)], 1000001, file)

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/math/trimmed_sum.h"
 #include "core/render/counted_work.h"
 
 namespace mote::integrators {
@@ -22,13 +23,9 @@ double work_of(Statistics s, double ray_work) {
     return ray_work * counted_work(s) + collision * collisions;
 }
 
-/// Sum without the share of terms that are largest: a trial is short, and one bright path in a few hundred
-/// would decide it.
+/// A trial is short, and one bright path in a few hundred would decide it.
 double sum_without_outliers(std::vector<double> terms) {
-    constexpr double outliers = 0.002;
-    const auto kept = terms.begin() + std::ptrdiff_t(double(terms.size()) * (1.0 - outliers));
-    std::nth_element(terms.begin(), kept, terms.end());
-    return std::accumulate(terms.begin(), kept, 0.0);
+    return sum_without_largest(terms, terms.size() / 500);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "core/math/trimmed_sum.h"
 #include "integrators/bidirectional/strategies.h"
 
 namespace mote::integrators {
@@ -93,9 +93,7 @@ double variance_at(const Trial& trial, const PerTechnique& efforts, double outli
         const double d = a.mean - b.mean;
         of_pixel[i] = 0.5 * trial.weights[i % trial.weights.size()] * (d * d + a.variance + b.variance);
     });
-    const auto last = of_pixel.end() - std::ptrdiff_t(outliers * double(of_pixel.size()));
-    if (last != of_pixel.end()) std::nth_element(of_pixel.begin(), last, of_pixel.end());
-    double sum = std::accumulate(of_pixel.begin(), last, 0.0);
+    double sum = core::sum_without_largest(of_pixel, std::size_t(outliers * double(of_pixel.size())));
     // Each is a path of its own, which seldom meets a pixel: its variance is its square.
     for (const TrialSplat& splat : trial.splats) {
         const double light = splat.sample.light / density_left(splat.sample, efforts);

@@ -65,6 +65,7 @@ std::shared_ptr<Emitter> create_point(const PointLightSettings& s, const Propert
 }  // namespace
 
 std::shared_ptr<Emitter> make_point_light(const Vec3d& position, const Rgb& intensity) {
+    if (!is_finite(Vec3(position))) throw InputError("the position of a point light is not finite");
     return std::make_shared<PointLight>(Vec3(position), checked_brightness(intensity, "intensity"));
 }
 

@@ -15,7 +15,9 @@ class SamplingSelector : public TileSelector {
 
   protected:
     /// VPLs with weights 1 / (n p), valid until the next call; none: no light. Lanes whose `max_vpl_depth` is
-    /// 0 are idle, what else they hold has no meaning; all lanes get the light of the same VPLs.
+    /// 0 are idle, what else they hold has no meaning; all lanes get the light of the same VPLs. p may be 0
+    /// for a VPL that is deeper (VirtualPointLight::depth) than max_vpl_depth of every lane, and for no other
+    /// whose light reaches one. Called once for a tile, on surfaces and in media.
     virtual std::span<const WeightedVpl> sample(const ReceiverLanes& receivers, core::Rng& rng) = 0;
     /// If true, record_light() needs the light of every sample.
     virtual bool learns() const { return false; }

@@ -127,11 +127,12 @@ class Selection : public core::Object {
     /// Largest size in memory while prepare() works and of what its selectors share, besides the VPLs
     /// [bytes].
     virtual std::size_t memory_bytes(std::size_t vpls) const = 0;
+    /// States its settings and costs.
     virtual void plan(core::Plan& plan, const SelectionSize& size) const = 0;
 
     /// Limit of memory_bytes(): ten million VPLs fit several times, and a machine of 8 GB stays usable.
     static constexpr std::size_t max_bytes = std::size_t(4) << 30;
-    core::SourceLocation where;
+    core::SourceLocation where;  ///< of its element in the scene file
 
   protected:
     /// Throws core::InputError where the VPLs need more than max_bytes, core::OutOfMemory where they need

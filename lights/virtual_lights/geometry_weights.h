@@ -29,8 +29,9 @@ struct UnboundedGeometry {
 
 /// min(G*, b) (Engelhardt 2013, Sec. 10.1.3); `bound` is b [1/m^2], infinity for all.
 struct BoundedGeometry {
-    float bound;                                                                             ///< b [1/m^2]
-    float operator()(float g, float, float, float) const { return core::min_of(g, bound); }  ///< at most b
+    float bound;  ///< b [1/m^2], above 0; infinity: none
+    /// G*, at most b.
+    float operator()(float g, float, float, float) const { return core::min_of(g, bound); }
 };
 
 /// max(0, G* - b) = B* G*: what BoundedGeometry leaves out (Eq. 10.10 with the bound that it does not print).

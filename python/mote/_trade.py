@@ -46,7 +46,7 @@ def trade(scene: Union[Scene, str, Path], methods: Optional[List[Mapping[str, An
     """Lets methods take turns on a scene and measures the error of each over time against a reference.
 
     scene: a file, or a mote.Scene (with its changes and plugins) of anything but arrays. plugins: shared libraries to load
-    types from, as `--plugin`. methods: [{"name": ..., "integrator": ..., "settings": {...}}, ...] as in a methods file (docs/guide.md); none: what
+    types from, as `--plugin`. methods: [{"name": ..., "integrator": ..., "settings": {...}}, ...] as in a methods file (docs/howto/trade.md); none: what
     suits the scene. reference: an EXR file; none: one is rendered. resolve: the
     smallest error that it must judge, relative. seconds or passes: for every method and each of
     `seeds`. Writes output/trade.html and all that it is made of, and returns its summary.json: for every method its

@@ -22,7 +22,7 @@ struct FrameFeatures {
     std::span<const core::Vec3> normal;    ///< unit
     std::span<const std::uint32_t> id;     ///< of the object
     /// From the pixel to where its point was in the frame before [pixels]; not finite: it was not seen.
-    /// Empty: nothing moves.
+    /// Empty: nothing moves on the picture; of a camera that moves: camera_motion().
     std::span<const core::Vec2> motion;
     /// Where the point itself was [m]; empty: it stands still in the world.
     std::span<const core::Vec3> previous_position;

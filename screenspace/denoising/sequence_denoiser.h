@@ -46,7 +46,8 @@ class SequenceDenoiser {
     explicit SequenceDenoiser(const DenoiserSettings& settings = {});
 
     /// The next frame, which has the layers of those before it. `connected` false: nothing is taken from
-    /// those, such as after a cut. Throws std::invalid_argument when sizes differ or there is no layer.
+    /// those, such as after a cut. Frames may differ in size, since motion leads to pixels of the frame
+    /// before; throws std::invalid_argument where parts of one do, or there is no layer.
     std::vector<core::Rgb> add(const DenoiserFrame& frame, bool connected = true,
                                core::CancelToken cancelled = {});
     /// Frames that the pixels of the last one were accumulated from.

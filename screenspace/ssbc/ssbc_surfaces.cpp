@@ -110,6 +110,8 @@ void SsbcSurfaces::check() const {
             !(facing[i] >= -1e-4f && facing[i] <= 1.0001f))  // rounded cosines
             throw std::invalid_argument(
                 "a position, normal or cosine of a patch is not finite or out of range");
+        if (std::abs(glm::dot(normal[i], normal[i]) - 1.0f) > 1e-2f)
+            throw std::invalid_argument("a normal of a patch is not a unit vector");
     }
 }
 

@@ -85,7 +85,8 @@ void check(const HostScene& host, const HostLightSettings& s) {
     const bool vpls = s.method == HostMethod::virtual_point_lights;
     if (s.paths < 1) throw core::InputError("there is at least one light path");
     if (host.scene().emitters().empty()) throw core::InputError("the scene has no lamp");
-    if (!(s.bound > 0.0f)) throw core::InputError("the bound is above 0");
+    if (!(s.bound > 0.0f))
+        throw core::InputError("the bound is above 0; 0 from C, and infinity from C++, are none");
     if (!vpls && s.selection != "all") throw core::InputError("a selection is of virtual point lights");
     if (s.compensation_steps != 0 && (!vpls || !std::isfinite(s.bound)))
         throw core::InputError("compensation is of virtual point lights with a bound");

@@ -1,4 +1,6 @@
 // Lights as the scene language makes them: defaults, choices, and values that are refused with file and line.
+#include <cmath>
+
 #include "core/objects/properties.h"
 #include "core/objects/registry.h"
 #include "core/scene/medium.h"
@@ -144,6 +146,7 @@ TEST_CASE("spots and environments refuse what keeps no angles", "[lights][emitte
     CHECK(make("spot", {{"cutoff_angle", 20.0}, {"beam_width", 21.0}}).error.find("beam_width") !=
           std::string::npos);
     CHECK_THROWS_AS(mote::lights::make_environment_map({1, 1, {Rgb(1.0f)}}, stretched), InputError);
+    CHECK_THROWS_AS(mote::lights::make_point_light({0.0, std::nan(""), 0.0}, Rgb(1.0f)), InputError);
     CHECK(make("envmap").error.find("filename") != std::string::npos);
     CHECK(make("envmap", {{"filename", std::string("missing.exr")}}).error.find("missing.exr") !=
           std::string::npos);

@@ -24,6 +24,15 @@ class OwnSettingsTest(unittest.TestCase):
             own.check()
         self.assertEqual(own.suffix(), "_bound=5_resx=32_film.height=8_filter=true")
 
+    def test_names(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = Path(folder) / "scene.xml"
+            scene.write_text('<scene><integer name="width" value="$resx"/></scene>')
+            OwnSettings(["--bound", "5", "--resx", "32", "--film.height", "8"], MOTE).check_names([scene])
+            for unknown in ("bounds", "res"):
+                with self.assertRaisesRegex(ValueError, f"no --{unknown}:"):
+                    OwnSettings([f"--{unknown}", "5"], MOTE).check_names([scene])
+
     def test_words(self):
         self.assertFalse(OwnSettings([], MOTE))
         with self.assertRaises(ValueError):

@@ -130,6 +130,8 @@ TEST_CASE("What cannot be computed is refused", "[ssbc]") {
     while (lost.area[patch] == 0.0f) ++patch;
     lost.position[patch].y = std::nanf("");
     CHECK_THROWS_AS(lost.check(), std::invalid_argument);
+    lost.position[patch] = picture.surfaces.position[patch], lost.normal[patch] *= 5.0f;
+    CHECK_THROWS_AS(lost.check(), std::invalid_argument);
     lost.area[patch] = 0.0f;  // takes no part: what else it holds has no meaning
     CHECK_NOTHROW(lost.check());
     lost.area[patch] = -1.0f;

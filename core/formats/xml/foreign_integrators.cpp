@@ -193,6 +193,7 @@ void complete_integrator(SceneDocument& document, const std::string& type, const
 
 void override_integrator(SceneDocument& document, const std::string& type, const Registry& registry) {
     const Element& element = own_integrator(document, type);
+    if (element.get("type") == type && registry.find(Category::integrator, type)) return;  // with its faults
     if (element.find("type") && !registry.find(Category::integrator, element.get("type")))
         warn(document,
              "unknown integrator type '" + printable(element.get("type")) + "': --integrator takes its place",

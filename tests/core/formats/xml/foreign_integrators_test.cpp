@@ -104,6 +104,18 @@ TEST_CASE("With --integrator whatever is wrong with the file's own is a warning"
     CHECK(load_error(scene_xml("<integrator type='erpt'/>" + rest)) != "");
 }
 
+TEST_CASE("A wrong value of the integrator that --integrator names is an error", "[scene][foreign]") {
+    std::string message;
+    try {
+        with_integrator(
+            "<integrator type='other'/><integrator type='fake'>\n<integer name='max_depth' "
+            "value='many'/></integrator><shape type='sphere'/>");
+    } catch (const InputError& error) {
+        message = error.what();
+    }
+    CHECK(contains(message, "test.xml:3: 'many' is not an integer"));
+}
+
 TEST_CASE("Parameters of other integrators are known", "[scene][foreign]") {
     const auto scene = load_body(
         "<integrator type='fake'><integer name='samples_per_pass' value='4'/>"
