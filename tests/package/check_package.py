@@ -95,7 +95,7 @@ def build_consumer(prefix):
     text = "".join(f"#include <mote/{header}>\n" for header in public_headers())
     (consumer / "all_headers.cpp").write_text(text + "#include <mote/version.h>\n")
     run("cmake", "-S", consumer, "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}",
-        f"-DMOTE_EXAMPLES={arguments.source}/examples", f"-DCMAKE_CXX_COMPILER={arguments.compiler}",
+        f"-DMOTE_EXAMPLES={prefix}/share/doc/mote/examples", f"-DCMAKE_CXX_COMPILER={arguments.compiler}",
         "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
         *python_with_numpy(), *launcher)
     run("cmake", "--build", build)
