@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
 
 #include "core/render/render_driver.h"
 #include "tests/integrators/test_scenes.h"
@@ -61,17 +60,12 @@ TEST_CASE("a room twelve kilometres from the origin has the light that it has th
     constexpr int seeds = 16;
     const auto near = scene_from(room(0, 0, 0), 8), far = scene_from(room(10000, 7000, -4000), 8);
     std::vector<std::string> all;
-    const std::map<std::string, std::string> settings = {
-        // Rounding cuts the ball into more charts than an atlas of few texels holds.
-        {"mote_ray_bundles",
-         R"(<integer name="directions" value="32"/><integer name="texel_budget" value="8000"/>)"},
-        // Without the trial, which takes longer than four passes of 64 pixels, every technique is at work.
-        {"mote_upbp", R"(<string name="efforts" value="equal"/>)"}};
-    for (const std::string& type : registry().types(core::Category::integrator)) {
-        const auto its = settings.find(type);
+    for (const std::string& type : registry().types(core::Category::integrator))
+        // Rounding cuts the ball into more charts than an atlas of 400 texels holds.
         all.push_back(fmt::format(R"(<integrator type="{}">{}</integrator>)", type,
-                                  its != settings.end() ? its->second : quick_settings(type)));
-    }
+                                  type == "mote_ray_bundles" ? R"(<integer name="directions" value="32"/>
+                                        <integer name="texel_budget" value="8000"/>)"
+                                                             : quick_settings(type)));
     all.push_back(R"(<integrator type="mote_vpl"><integer name="paths" value="40"/>
         <selection name="selection" type="resampling"/></integrator>)");
     for (const std::string& xml : all) {

@@ -109,7 +109,10 @@ inline std::string smoke_medium(const std::string& path) {
                        path);
 }
 
-/// Numbers that keep pictures quick, where an integrator has them.
+/// Choices by which pictures are quick: a trial takes longer than a few passes of few pixels.
+inline const std::map<std::string, std::string> quick_choices = {{"efforts", "equal"}};
+
+/// Numbers and choices that keep pictures quick, where an integrator has them.
 inline std::string quick_settings(const std::string& type) {
     const std::map<std::string, int> numbers = {
         {"paths", 40},       {"photon_paths", 200}, {"directions", 32}, {"texel_budget", 400},
@@ -119,6 +122,8 @@ inline std::string quick_settings(const std::string& type) {
     for (const core::Parameter& p : registry().find(core::Category::integrator, type)->parameters)
         if (const auto it = numbers.find(p.name); it != numbers.end())
             xml += fmt::format(R"(<integer name="{}" value="{}"/>)", p.name, it->second);
+        else if (const auto quick = quick_choices.find(p.name); quick != quick_choices.end())
+            xml += fmt::format(R"(<string name="{}" value="{}"/>)", p.name, quick->second);
     return xml;
 }
 
