@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/formats/xml/element_checks.h"
+#include "core/formats/xml/foreign_names.h"
 #include "core/formats/xml/lenient_scene.h"
 #include "core/formats/xml/object_maker.h"
 #include "core/formats/xml/scene_values.h"
