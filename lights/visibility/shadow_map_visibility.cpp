@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/parameters/add_type.h"
+#include "lights/shadow_maps/shadow_map_gather.h"
 #include "lights/visibility/mapped_visibility.h"
 
 namespace mote::lights {
