@@ -58,8 +58,8 @@ def sphinx(python, build, out, execute):
     profile.mkdir(parents=True, exist_ok=True)
     # Pages run beside their kernels: that these listen without encryption is no warning of this build.
     (profile / "ipython_kernel_config.py").write_text("c.IPKernelApp.log_level = 'ERROR'\n", encoding="utf-8")
-    variables = os.environ | {"IPYTHONDIR": str(out / "ipython"), "MOTE_SITE_VERSION": version(), "MOTE_SITE_EXECUTE": "cache" if execute else "off", "MOTE_SITE_ROOT": str(ROOT),
-                              "MOTE_SITE_STATIC": str(out / "source/_static"),
+    variables = os.environ | {"MOTE_SITE_VERSION": version(), "MOTE_SITE_EXECUTE": "cache" if execute else "off", "MOTE_SITE_ROOT": str(ROOT),
+                              "MOTE_SITE_STATIC": str(out / "source/_static"), "IPYTHONDIR": str(profile.parent),
                               "PYTHONPATH": f"{build / 'python'}:{HERE}", "PATH": f"{build / 'bin'}:{os.environ['PATH']}",
                               "MPLBACKEND": "module://matplotlib_inline.backend_inline", "PYDEVD_DISABLE_FILE_VALIDATION": "1"}
     done = subprocess.run([python, "-m", "sphinx", "-b", "html", "-W", "--keep-going", "-q", "-c", HERE, "-d", out / "doctrees", out / "source",

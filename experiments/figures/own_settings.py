@@ -61,8 +61,10 @@ class OwnSettings:
 
     def check_names(self, files):
         """Raises ValueError, before the first render, for names that are in none of the files as $NAME and that no integrator has."""
+        if not self.values:
+            return
         text = "".join(file.read_text(encoding="utf-8") for file in files)
-        known = {name for page in self.manual() for name in self.parameters(page)} if self.values else set()
+        known = {name for page in self.manual() for name in self.parameters(page)}
         unknown = [f"--{name}" for name in self.values
                    if "." not in name and name not in known and not re.search(rf"\${re.escape(name)}\b", text)]
         if unknown:

@@ -23,7 +23,8 @@ double work_of(Statistics s, double ray_work) {
     return ray_work * counted_work(s) + collision * collisions;
 }
 
-/// A trial is short, and one bright path in a few hundred would decide it.
+/// Without the 0.2 % that are largest: a trial is short, and one bright path in a few hundred would decide
+/// it.
 double sum_without_outliers(std::vector<double> terms) {
     return sum_without_largest(terms, terms.size() / 500);
 }

@@ -42,7 +42,7 @@ struct SsbcSurfaces {
     void set(std::size_t pixel, const core::Vec3& p, const core::Vec3& n, const core::Vec3& to_viewer,
              float surface_area, const core::Rgb& diffuse_reflectance);
     /// Throws std::invalid_argument unless every buffer has one entry a pixel, every reflectance is in [0,
-    /// 1], no area is negative, and position and normal are finite and `facing` in [0, 1] wherever the area
+    /// 1], no area is negative, and position is finite, normal unit and `facing` in [0, 1] wherever the area
     /// is not zero.
     void check() const;
 };

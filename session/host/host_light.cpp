@@ -85,8 +85,7 @@ void check(const HostScene& host, const HostLightSettings& s) {
     const bool vpls = s.method == HostMethod::virtual_point_lights;
     if (s.paths < 1) throw core::InputError("there is at least one light path");
     if (host.scene().emitters().empty()) throw core::InputError("the scene has no lamp");
-    if (!(s.bound > 0.0f))
-        throw core::InputError("the bound is above 0; 0 from C, and infinity from C++, are none");
+    if (!(s.bound > 0.0f)) throw core::InputError("a bound is positive; where there is none, it is left out");
     if (!vpls && s.selection != "all") throw core::InputError("a selection is of virtual point lights");
     if (s.compensation_steps != 0 && (!vpls || !std::isfinite(s.bound)))
         throw core::InputError("compensation is of virtual point lights with a bound");

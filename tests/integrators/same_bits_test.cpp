@@ -72,13 +72,19 @@ struct Settings {
     }
 };
 
+/// The default, or a quicker choice.
+const std::string& usual_choice(const Parameter& p) {
+    const auto quick = quick_choices.find(p.name);
+    return quick != quick_choices.end() ? quick->second : p.default_value;
+}
+
 Settings usual(const Manual& manual) {
     Settings settings;
     for (const Parameter& p : manual.parameters)
         if (p.type == "integer" && default_of(p) > double(largest_integer))
             settings.values.emplace_back(p.name, element(p, std::to_string(largest_integer)));
-        else if (quick_choices.contains(p.name))
-            settings.values.emplace_back(p.name, element(p, quick_choices.at(p.name)));
+        else if (usual_choice(p) != p.default_value)
+            settings.values.emplace_back(p.name, element(p, usual_choice(p)));
     return settings;
 }
 
@@ -134,10 +140,8 @@ std::vector<std::string> values_of(const Manual& manual, const Parameter& p, int
     } else if (p.type == "string") {
         if (p.choices.empty() && p.name != "shares")
             FAIL(manual.type << "." << p.name << " declares no choices");
-        const auto quick = quick_choices.find(p.name);
-        const std::string& usual = quick != quick_choices.end() ? quick->second : p.default_value;
         for (const std::string& word : p.choices.empty() ? shares : p.choices)
-            if (word != usual) result.push_back(element(p, word));
+            if (word != usual_choice(p)) result.push_back(element(p, word));
     } else if (const auto category = find_category(p.type)) {
         result = nested(p, *category, nesting);
     } else if (p.type == "integer" || p.type == "float") {

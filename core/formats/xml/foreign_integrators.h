@@ -14,7 +14,7 @@ namespace mote::core {
 /// document.features.
 void replace_foreign_integrators(SceneDocument& document, const Registry& registry);
 /// --integrator: the type that the command line names, with those parameters of the file that it has.
-/// Whatever is wrong with the file's own integrator is a warning. Throws InputError for an unknown type.
+/// Whatever is wrong with an integrator of another type is a warning. Throws InputError for an unknown type.
 void override_integrator(SceneDocument& document, const std::string& type, const Registry& registry);
 
 /// Sets the type where the file has no integrator, or one that is not known.
