@@ -183,10 +183,25 @@ class EyePath {
     }
     /// See layer_of_connection().
     Transport layer_of_emission() const { return transport_layer(scatterings_, surface_first_); }
+    /// Of light scattered at the vertex after it was scattered in a medium; see layer_of_connection().
+    Transport layer_twice() const {
+        return transport_layer(scatterings_ + 2, scatterings_ == 0 ? vertex_.on_surface() : surface_first_);
+    }
     /// True where light joined to the vertex, or scattered along the segment, is wanted.
     bool wants_connection() const { return limits_.wanted[layer_of_connection()]; }
     /// See wants_connection().
     bool wants_along() const { return limits_.wanted[layer_along()]; }
+    /// See layer_twice().
+    bool wants_twice() const { return limits_.wanted[layer_twice()]; }
+    /// Light that the vertex scatters from a direction, with the density by which the path would leave there.
+    core::ScatteringValue scattered_from(const core::Vec3& wi) const {
+        core::ScatteringValue f = vertex_.eval_cos_and_pdf(wi, core::TransportMode::radiance);
+        f.pdf_solid_angle = lights::guided_pdf(guided_, wi, f.pdf_solid_angle);
+        return f;
+    }
+    /// Density by which the last segment's direction was chosen [1/sr]; infinity: of a camera, a mirror or
+    /// glass.
+    float pdf_of_direction() const { return pdf_of_direction_; }
 
   private:
     core::WalkEvent next_event(core::Rgb& emitted, core::WalkContext& context) {
@@ -238,7 +253,7 @@ class EyePath {
     /// Density of its directions over that without a guide. Times the throughput it is what surfaces and
     /// media let through, which roulette follows: throughput alone is low towards bright light.
     float guide_ratio_ = 1.0f;
-    float first_cosine_ = 1.0f, segment_length_ = 0.0f, passed_ = 0.0f;
+    float first_cosine_ = 1.0f, segment_length_ = 0.0f, passed_ = 0.0f, pdf_of_direction_ = core::infinity;
 };
 
 template <bool Media>
@@ -400,6 +415,7 @@ bool EyePath<Media>::scatter(core::WalkContext& context) {
     if (Media && vertex_.on_surface()) state_ = vertex_.state_towards(state_, next->wi);
     eta_ *= next->eta, guide_ratio_ *= guided->pdf_ratio;
     connected_ = !next->delta, previous_ = vertex_.light_receiver();
+    pdf_of_direction_ = next->delta ? core::infinity : next->pdf_solid_angle;
     ray_ = core::Ray{vertex_.ray_origin(next->wi), next->wi};
     return true;
 }

@@ -19,8 +19,20 @@ void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Med
         if (!lit_along || !path.wants_along() || path.depth() == settings.limits.max_depth) return;
         lane.sum[path.layer_along()] +=
             lights::throughput_of<Media>(segment.before) *
-            settings.equiangular->scattered_along(scene, segment.ray, segment.event.surface_distance,
-                                                  segment.start, path.sampler().next_2d(), packet.walk());
+            settings.equiangular->scattered_along(
+                scene, {segment.ray, segment.event.surface_distance, segment.start, path.pdf_of_direction()},
+                path.sampler().next_2d(), packet.walk());
+    };
+    const auto light_around_lamps = [&](int, Lane& lane) {
+        if (!lane.alive) return;
+        EyePath<Media>& path = *lane.path;
+        if (!path.vertex().connectable() || !path.wants_twice() ||
+            path.depth() + 1 == settings.limits.max_depth)
+            return;
+        lane.sum[path.layer_twice()] +=
+            path.throughput() * settings.equiangular->scattered_around_lamps(
+                                    scene, path.vertex(), path.state(),
+                                    [&](const Vec3& wi) { return path.scattered_from(wi); }, packet.walk());
     };
     // min(G*, b)/G* of the edge between the first connectable vertex and this one, where no VPL stands on a
     // delta surface: what continues from there is not part of the bounded transport, but of what it lacks.
@@ -39,6 +51,7 @@ void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Med
         if (weighted) packet.for_each(factors_of_edge);
         if (recorder) packet.for_each([&](int i, Lane& lane) { recorder->on_arrival(i, lane); });
         packet.sample_lights({lit_along});
+        if (lit_along) packet.for_each(light_around_lamps);
         if (recorder) packet.for_each([&](int i, Lane& lane) { recorder->on_vertex(i, lane); });
     };
     packet.run(step, light_along);

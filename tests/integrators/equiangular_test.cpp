@@ -1,4 +1,4 @@
-// Equi-angular sampling changes the noise of single scattering, never its mean.
+// Equi-angular sampling changes the noise of scattering in media, never its mean.
 #include "integrators/path_tracing/equiangular.h"
 
 #include <fmt/format.h>
@@ -73,6 +73,105 @@ TEST_CASE("Equi-angular sampling is quieter than collisions in thin fog", "[equi
         return r.whole[r.layer("single_scattering")][1].variance_of_mean;
     };
     CHECK(noise("true") < 0.05 * noise("false"));
+}
+
+namespace {
+
+/// A lamp in a cube of thin fog that scatters evenly.
+constexpr double intensity = 5.0, sigma_t = 0.3, albedo = 0.8, half_edge = 2.0;
+const char* const lamp_in_fog = R"(<scene version="3.0.0"><shape type="cube"><transform name="to_world">
+    <scale value="2"/></transform><bsdf type="null"/><medium type="homogeneous" name="interior">
+    <float name="sigma_t" value="0.3"/><float name="albedo" value="0.8"/></medium></shape>
+    <emitter type="point"><rgb name="intensity" value="5"/></emitter>
+    <sensor type="perspective"/></scene>)";
+
+/// Light that reaches (0, 0, d) along the direction at the angle theta to the lamp, scattered once before
+/// the border of the cube: in planes x = 0 and x = y it differs little, and the fog at both is averaged.
+double light_towards_lamp(double d, double theta, double phi) {
+    const core::Vec3d direction(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                -std::cos(theta));
+    double border = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        const double origin = axis == 2 ? d : 0.0, step = direction[axis];
+        if (step != 0.0) border = std::min(border, (std::copysign(half_edge, step) - origin) / step);
+    }
+    // In the angle at the lamp, where 1/r^2 dt = dalpha / D.
+    const double nearest = d * std::cos(theta), D = d * std::sin(theta);
+    const double first = std::atan2(-nearest, D), last = std::atan2(border - nearest, D);
+    constexpr int steps = 64;
+    double sum = 0.0;
+    for (int i = 0; i < steps; ++i) {
+        const double s = D * std::tan(first + (last - first) * (i + 0.5) / steps);
+        sum += std::exp(-sigma_t * (nearest + s + std::sqrt(D * D + s * s)));
+    }
+    return sum / steps * (last - first) / D * sigma_t * albedo * intensity / (4.0 * double(core::pi));
+}
+
+/// Mean of samples and its variance.
+struct Moments {
+    double count = 0.0, sum = 0.0, squares = 0.0;
+    void add(double x) { ++count, sum += x, squares += x * x; }
+    double mean() const { return sum / count; }
+    double variance_of_mean() const { return (squares / count - mean() * mean()) / (count - 1.0); }
+};
+
+/// Light that arrives from all sides, scattered again: its mean over directions.
+double scattered_again(double d) {
+    constexpr int thetas = 256, phis = 64;
+    double sum = 0.0;
+    for (int i = 0; i < thetas; ++i)
+        for (int j = 0; j < phis; ++j) {
+            const double theta = double(core::pi) * (i + 0.5) / thetas;
+            sum += light_towards_lamp(d, theta, 2.0 * double(core::pi) * (j + 0.5) / phis) * std::sin(theta);
+        }
+    return sum * double(core::pi) / thetas / phis / 2.0;
+}
+
+}  // namespace
+
+TEST_CASE("Light of a lamp in fog, scattered twice, is right and has no rare bright samples",
+          "[equiangular]") {
+    using namespace mote::core;
+    const auto scene = scene_from(lamp_in_fog, 4);
+    const integrators::EquiangularLights lights(*scene);
+    const float pdf = inv_four_pi;
+    for (const float d : {1.0f, 0.2f, 0.01f}) {
+        ScatteringVertex vertex;
+        vertex.position = Vec3(0.0f, 0.0f, d), vertex.wo = Vec3(0, 0, 1);
+        WalkContext context;
+        context.rng = Rng(7);
+        const MediumState state = scene->eye_medium_state(Ray{vertex.position, vertex.wo});
+        vertex.phase = &state.current()->phase();
+        Moments own, around;
+        double largest = 0.0;
+        for (int i = 0; i < 200000; ++i) {
+            const Vec3 wi =
+                vertex.phase->sample(vertex.wo, {context.rng.next_float(), context.rng.next_float()}).wi;
+            const Ray ray{vertex.position, wi};
+            context.boundary_hits.clear();
+            scene->boundaries_along(ray, context.boundary_hits);
+            const Vec2 u{context.rng.next_float(), context.rng.next_float()};
+            const Rgb along = lights.scattered_along(*scene, {ray, infinity, state, pdf}, u, context);
+            const Rgb joint = lights.scattered_around_lamps(
+                *scene, vertex, state,
+                [&](const Vec3&) {
+                    return ScatteringValue{Rgb(pdf), pdf};
+                },
+                context);
+            own.add(double(along.x)), around.add(double(joint.x));
+            largest = std::max({largest, double(along.x), double(joint.x)});
+        }
+        const double expected = scattered_again(double(d));
+        const double mean = own.mean() + around.mean();
+        const double deviation = std::sqrt(own.variance_of_mean() + around.variance_of_mean());
+        INFO("at " << d << " m: " << mean << " +- " << deviation << ", expected " << expected);
+        CHECK(std::fabs(mean - expected) < 4.5 * deviation + 1e-3 * expected);
+        CHECK(deviation < 0.01 * expected);
+        // sigma_s I / (4 pi) pi / (d sin) over pi^2 times the density: pi / 16 sigma_s I / d at most, times
+        // what the angles along the ray span, which 1 / (pi^2 sin) alone counts as pi.
+        CHECK(largest < double(pi) / 16.0 * sigma_t * albedo * intensity / double(d) * 1.001);
+        CHECK_FALSE(std::fabs(own.mean() - expected) < 4.5 * deviation + 1e-3 * expected);
+    }
 }
 
 TEST_CASE("An equi-angular density integrates to one", "[equiangular]") {
