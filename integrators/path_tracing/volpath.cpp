@@ -52,7 +52,8 @@ class Volpath final : public Integrator {
 void Volpath::plan_equiangular(Plan& plan, const Requirements& r) const {
     const bool useful = r.media_scattering && r.lights_point > 0;
     if (equiangular_ && useful)
-        plan.run("equi-angular sampling", "one distance a ray, for point and spot lights",
+        plan.run("equi-angular sampling",
+                 "for point and spot lights: one distance a ray, one more direction a vertex",
                  "requested, or by mote_layers where one stands in a medium");
     else if (equiangular_)
         plan.leave_out("equi-angular sampling", "requested, without effect",
