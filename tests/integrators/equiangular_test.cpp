@@ -29,15 +29,16 @@ std::string lit_box(const std::string& medium) {
     return xml.insert(xml.find("<sensor"), lights);
 }
 
-void check_equal(const std::string& xml) {
+/// `more`: settings of the paths that are lit along, `both`: of those and of the reference.
+void check_equal(const std::string& xml, const std::string& more = "", const std::string& both = "") {
     const auto scene = scene_from(xml, 8);
-    const auto render = [&](const char* settings, std::uint32_t passes, std::uint64_t seed) {
+    const auto render = [&](const std::string& settings, std::uint32_t passes, std::uint64_t seed) {
         return render_statistics(
             *scene, *integrator_from(fmt::format(R"(<integrator type="volpath">{}</integrator>)", settings)),
             {8, passes, seed});
     };
-    const auto along = render(R"(<boolean name="equiangular" value="true"/>)", 5000, 5);
-    const auto reference = render("", 10000, 6);
+    const auto along = render(R"(<boolean name="equiangular" value="true"/>)" + more + both, 5000, 5);
+    const auto reference = render(both, 10000, 6);
     for (const char* layer : {"direct", "single_scattering", "multiple_scattering", "beauty"}) {
         check_same_mean(along, layer, reference, layer, {1.1});
     }
@@ -47,6 +48,15 @@ void check_equal(const std::string& xml) {
 
 TEST_CASE("Equi-angular sampling keeps the mean in a homogeneous medium", "[equiangular][equality]") {
     check_equal(lit_box(fog("0.5, 1, 2", R"(<phase type="hg"><float name="g" value="0.5"/></phase>)")));
+}
+
+TEST_CASE("Equi-angular sampling keeps the mean of guided paths", "[equiangular][guiding][equality]") {
+    check_equal(lit_box(fog("0.5, 1, 2", R"(<phase type="hg"><float name="g" value="0.5"/></phase>)")),
+                R"(<string name="guiding" value="on"/><integer name="guiding_passes" value="6"/>)");
+}
+
+TEST_CASE("Equi-angular sampling keeps the mean of paths of three edges", "[equiangular][equality]") {
+    check_equal(lit_box(fog("0.5, 1, 2", "")), "", R"(<integer name="max_depth" value="3"/>)");
 }
 
 TEST_CASE("Equi-angular sampling keeps the mean in a heterogeneous medium", "[equiangular][equality]") {
