@@ -31,7 +31,7 @@ void register_mote_epipolar(core::Registry& registry);
 // Methods that a scene's requirements choose (layers/layer_methods.h), with the settings of a scene file that
 // names nothing but these limits.
 std::shared_ptr<const core::Integrator> make_path(const EyePathLimits& limits);
-std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits, bool equiangular);
+std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits);
 /// Virtual point lights by the ten thousand, resampled for pixels that do not lie side by side, as an image
 /// filter wants them. What their bound takes is missing.
 std::shared_ptr<const core::Integrator> make_sampled_vpls(const EyePathLimits& limits);

@@ -4,6 +4,7 @@
 
 #include "core/scene/scene.h"
 #include "integrators/eye_path/plan_coarse_voxels.h"
+#include "integrators/path_tracing/equiangular.h"
 #include "integrators/register_parts.h"
 #include "integrators/single_scattering/single_scattering_estimator.h"
 
@@ -15,16 +16,6 @@ namespace {
 
 /// More lights than this, marched one after the other, take longer than one that is sampled.
 constexpr std::size_t max_marched_lights = 16;
-
-/// Light at collisions close to a lamp has no finite variance: the density of collisions does not follow
-/// 1/d^2.
-bool lamps_in_media(const Scene& scene) {
-    const auto lights = positional_lights(scene);
-    return std::any_of(lights.begin(), lights.end(), [&](const Emitter* light) {
-        const Medium* medium = scene.emitter_medium_state(*light, {}).current();
-        return medium && medium->traits().scattering;
-    });
-}
 
 /// Everything but what is left to chance without need: the light of a few lights with a position, scattered
 /// once in media, is marched.
@@ -39,6 +30,7 @@ Marching marching_of(const Scene& scene, const Requirements& r, const EyePathLim
         return {false, "voxels are too dense to be marched"};
     if (lights > max_marched_lights) return {false, "too many lights to march each of them"};
     if (lights == 0) return {false, "no light has a position to march to"};
+    if (has_lamps_in_media(scene)) return {false, "equi-angular sampling lights every segment of a path"};
     return {r.media_scattering && (limits.max_depth < 0 || limits.max_depth > 1),
             "nothing scatters in media"};
 }
@@ -64,7 +56,7 @@ std::vector<LayerMethod> choose_paths(const Scene& scene, const Requirements& r,
     const std::string reason =
         "one path has the light of all its vertices, and errs independently of those of other pixels";
     if (!r.any_media()) return {{make_path(limits), near | Transport::indirect, reason}};
-    const auto paths = make_volpath(limits, r.media_scattering && lamps_in_media(scene));
+    const auto paths = make_volpath(limits);
     const Marching marching = marching_of(scene, r, limits);
     if (!marching.pays) return {{paths, near | single | twice, reason + "; " + marching.why}};
     if (!has_other_lights(scene))
@@ -85,7 +77,7 @@ std::vector<LayerMethod> choose_lights(const Scene& scene, const Requirements& r
     if (!r.any_media()) return {{make_path(limits), near, "one scattering: light and BSDF sampling"}, far};
     const Marching marching = marching_of(scene, r, limits);
     if (!marching.pays) {
-        const auto paths = make_volpath(limits, r.media_scattering && lamps_in_media(scene));
+        const auto paths = make_volpath(limits);
         return {{paths, near | single, "paths; " + marching.why}, far};
     }
     return {{make_single_scattering(limits), near | TransportSet::other_scattering(),

@@ -32,6 +32,14 @@ std::optional<EquiangularSample> sample_equiangular(const Ray& ray, float t_max,
     return EquiangularSample{t, float(pdf)};
 }
 
+bool has_lamps_in_media(const Scene& scene) {
+    return std::ranges::any_of(scene.emitters(), [&](const auto& light) {
+        if (!Scene::light_position(*light) || is_black(light->power())) return false;
+        const Medium* medium = scene.emitter_medium_state(*light, {}).current();
+        return medium && medium->traits().scattering;
+    });
+}
+
 EquiangularLights::EquiangularLights(const Scene& scene) {
     std::vector<LightBounds> bounds, everywhere;
     for (const auto& emitter : scene.emitters()) {

@@ -32,6 +32,10 @@ struct EquiangularSample {
 std::optional<EquiangularSample> sample_equiangular(const core::Ray& ray, float t_max,
                                                     const core::Vec3& light, float u);
 
+/// True where a point or spot light stands in a medium that scatters: light at collisions close to it has no
+/// finite variance, since their density does not follow 1/d^2.
+bool has_lamps_in_media(const core::Scene& scene);
+
 /// A ray to be lit, and what is known of it.
 struct LitRay {
     const core::Ray& ray;

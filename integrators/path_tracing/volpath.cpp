@@ -19,7 +19,7 @@ namespace {
 struct VolpathSettings {
     EyePathLimits limits;
     float vpl_bound = 0.0f;  ///< b [1/m^2]; 0: none
-    bool equiangular = false;
+    std::optional<bool> equiangular;
     GuidingSettings guiding;
 };
 
@@ -38,29 +38,34 @@ class Volpath final : public Integrator {
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         if (!scene.has_media()) return make_path_estimator<false>(scene, options, settings_);
         PathSettings settings = settings_;
-        if (equiangular_) settings.equiangular = std::make_shared<const EquiangularLights>(scene);
+        if (lights_along_rays(scene)) settings.equiangular = std::make_shared<const EquiangularLights>(scene);
         return make_path_estimator<true>(scene, options, settings);
     }
 
   private:
     bool bounded() const { return std::isfinite(settings_.bound); }
-    void plan_equiangular(Plan& plan, const Requirements& requirements) const;
+    bool lights_along_rays(const Scene& scene) const {
+        return equiangular_.value_or(!bounded() && has_lamps_in_media(scene));
+    }
+    void plan_equiangular(Plan& plan, const Scene& scene, const Requirements& requirements) const;
     PathSettings settings_;
-    bool equiangular_;
+    std::optional<bool> equiangular_;  ///< nothing: where lamps stand in media
 };
 
-void Volpath::plan_equiangular(Plan& plan, const Requirements& r) const {
+void Volpath::plan_equiangular(Plan& plan, const Scene& scene, const Requirements& r) const {
     const bool useful = r.media_scattering && r.lights_point > 0;
-    if (equiangular_ && useful)
+    if (useful && lights_along_rays(scene))
         plan.run("equi-angular sampling",
                  "for point and spot lights: one distance a ray, one more direction a vertex",
-                 "requested, or by mote_layers where one stands in a medium");
-    else if (equiangular_)
+                 equiangular_ ? "requested" : "one stands in a medium");
+    else if (equiangular_.value_or(false))
         plan.leave_out("equi-angular sampling", "requested, without effect",
                        r.media_scattering ? "no light has a position" : "no medium scatters");
     else if (useful)
         plan.leave_out("equi-angular sampling", "point lights are connected to collisions",
-                       "equiangular is false; in thin media it would cost less for the same noise");
+                       equiangular_
+                           ? "equiangular is false; in thin media it would cost less for the same noise"
+                           : "no light stands in a medium");
 }
 
 Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
@@ -78,15 +83,15 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
     if (bounded())
         plan.run("bound", std::to_string(settings_.bound) + " /m^2",
                  "requested: second edges are weighted by min(G*, b)/G*, the transport of bounded VPLs");
-    plan_equiangular(plan, requirements);
+    plan_equiangular(plan, scene, requirements);
     plan_caustics(plan, scene, requirements);
     return plan;
 }
 
 }  // namespace
 
-std::shared_ptr<const Integrator> make_volpath(const EyePathLimits& limits, bool equiangular) {
-    return std::make_shared<const Volpath>(VolpathSettings{limits, 0.0f, equiangular, {}});
+std::shared_ptr<const Integrator> make_volpath(const EyePathLimits& limits) {
+    return std::make_shared<const Volpath>(VolpathSettings{limits, 0.0f, {}, {}});
 }
 
 void register_volpath(Registry& registry) {
@@ -99,11 +104,12 @@ void register_volpath(Registry& registry) {
              "Bound b on the geometry term of the edge where VPLs connect; 0: none."),
          row("equiangular", &S::equiangular,
              "Light of point and spot lights in media by equi-angular sampling along every ray, instead of "
-             "at collisions."),
+             "at collisions.")
+             .when_absent("true where such a light stands in a medium"),
          within(&S::guiding, guiding_rows())},
         R"(<integrator type="volpath"><integer name="max_depth" value="-1"/></integrator>)",
         [](const S& s, const Properties& p) {
-            if (s.equiangular && s.vpl_bound > 0.0f)
+            if (s.equiangular.value_or(false) && s.vpl_bound > 0.0f)
                 throw InputError(
                     "equiangular and vpl_bound do not go together: the bound weights edges that end at "
                     "collisions",
