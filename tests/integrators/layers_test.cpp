@@ -305,13 +305,13 @@ TEST_CASE("light that is marched to through smoke in small steps has volpath's m
     xml.insert(xml.find("<sensor"), R"(<emitter type="point"><point name="position" x="0.1" y="0.3" z="0.8"/>
         <rgb name="intensity" value="0.6, 0.8, 1"/></emitter>)");
     const auto scene = scene_from(xml, 8);
-    const RenderSpec spec{4, 2000, 1};
+    const RenderSpec spec{4, 8000, 1};
     const auto tracked = render_statistics(*scene, *integrator_from("<integrator type='volpath'/>"), spec);
     const auto marched = render_statistics(
         *scene,
         *integrator_from("<integrator type='mote_single_scattering'><integer name='steps' value='1'/>"
                          "<float name='voxels' value='0.25'/></integrator>"),
-        {4, 2000, 2});
+        {4, 8000, 2});
     check_cell(marched, "direct", tracked, "direct");
     CHECK_FALSE(same_mean(marched.scaled(1.03), "direct", tracked, "direct", OnFailure::nothing).passed);
     const auto variance = [](const RenderStatistics& s) {
