@@ -183,7 +183,7 @@ class EyePath {
     }
     /// See layer_of_connection().
     Transport layer_of_emission() const { return transport_layer(scatterings_, surface_first_); }
-    /// Of light scattered at the vertex after it was scattered in a medium; see layer_of_connection().
+    /// Layer of light scattered at the vertex after it was scattered in a medium.
     Transport layer_twice() const {
         return transport_layer(scatterings_ + 2, scatterings_ == 0 ? vertex_.on_surface() : surface_first_);
     }

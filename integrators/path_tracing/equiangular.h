@@ -10,7 +10,7 @@
 // square has no finite mean. A vertex before such a ray therefore has a second technique, directions around
 // the lamp with a density of 1/sin of the angle to it (joint importance sampling: Georgiev et al. 2013),
 // which cancels that as well. A path takes one such direction at every vertex, beside the one in which it
-// goes on, and the balance heuristic combines the light along both.
+// continues, and the balance heuristic combines the light along both.
 #pragma once
 
 #include <memory>
