@@ -114,8 +114,8 @@ LayerChoice fill_layers(const Scene& scene, std::vector<LayerMethod> methods) {
             throw InputError(type + " cannot fill '" + transport_name(impossible) + "' here", method.where);
         method.cells = filled;
         for (const LayerMethod& other : choice.methods)
-            if (const TransportSet twice = other.cells & filled; !twice.empty())
-                throw InputError("two methods fill '" + transport_name(twice) +
+            if (const TransportSet both = other.cells & filled; !both.empty())
+                throw InputError("two methods fill '" + transport_name(both) +
                                      "': " + other.integrator->type() + " and " + type +
                                      "; name the cells of each, such as name=\"direct, indirect\"",
                                  method.where);
