@@ -18,8 +18,8 @@ namespace {
 
 struct VolpathSettings {
     EyePathLimits limits;
-    float vpl_bound = 0.0f;  ///< b [1/m^2]; 0: none
-    std::optional<bool> equiangular;
+    float vpl_bound = 0.0f;           ///< b [1/m^2]; 0: none
+    std::optional<bool> equiangular;  ///< nothing: where lamps stand in media
     GuidingSettings guiding;
 };
 

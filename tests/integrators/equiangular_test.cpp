@@ -177,8 +177,8 @@ TEST_CASE("Light of a lamp in fog, scattered twice, is right and has no rare bri
         INFO("at " << d << " m: " << mean << " +- " << deviation << ", expected " << expected);
         CHECK(std::fabs(mean - expected) < 4.5 * deviation + 1e-3 * expected);
         CHECK(deviation < 0.01 * expected);
-        // sigma_s I / (4 pi) pi / (d sin) over pi^2 times the density: pi / 16 sigma_s I / d at most, times
-        // what the angles along the ray span, which 1 / (pi^2 sin) alone counts as pi.
+        // Light along a ray is at most sigma_s I / (4 pi) pi / (d sin theta), and scattered by 1 / (4 pi)
+        // over a density of 1 / (pi^2 sin theta) at least.
         CHECK(largest < double(pi) / 16.0 * sigma_t * albedo * intensity / double(d) * 1.001);
         CHECK_FALSE(std::fabs(own.mean() - expected) < 4.5 * deviation + 1e-3 * expected);
     }
