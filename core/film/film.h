@@ -25,7 +25,7 @@
 #include "core/film/exact_sums.h"
 #include "core/film/pass_split.h"
 #include "core/math/sampler.h"
-#include "core/metrics/halves_error.h"
+#include "core/metrics/control_error.h"
 #include "core/objects/memory_budget.h"
 
 namespace mote::core {
@@ -115,6 +115,11 @@ class Film {
     std::vector<Rgb> half_mean(std::size_t layer, int half) const;
     /// Variance of that mean.
     std::vector<Rgb> half_variance_of_mean(std::size_t layer, int half) const;
+    /// The beauty of a part over a half of its passes, and the variance of that mean.
+    struct PartHalf {
+        std::vector<Rgb> mean, variance;  ///< by pixel
+    };
+    PartHalf part_half(std::size_t part, int half) const;  ///< needs PassSplit::halves
     /// The beauty of a half of the passes, and what set_mean() has made of it.
     struct HalfBeauty {
         std::vector<Rgb> passes, shown, variance;  ///< of `passes`, as of independent ones
@@ -158,7 +163,9 @@ class Film {
     /// picture's. Else it is known with noise, and the interval holds what several kinds of weights make of
     /// it: by the picture, a rare bright path is taken for a bright place, where it counts for little; by the
     /// darker half where the halves differ much, a lamp that one has missed for a dark one.
-    std::optional<PictureError> error() const;
+    /// `controls`: pixels with samples of their own (control_passes.h), which make the interval of halves
+    /// shorter; may be empty.
+    std::optional<PictureError> error(const ControlPixels& controls = {}) const;
 
     /// The bits of the film, for checkpoints: sums, counts, open blocks, and a checksum. Throws OutOfMemory
     /// where the budget has no room for them.
@@ -207,7 +214,7 @@ class Film {
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
     bool has_replaced_variance() const;
     bool every_layer_is_filtered() const;  ///< by halves: set_halves()
-    std::optional<PictureError> error_of_halves() const;
+    std::optional<PictureError> error_of_halves(const ControlPixels& controls) const;
     std::optional<PictureError> error_of_groups() const;
     std::vector<PassGroup> groups_of_passes() const;
     /// Variance of the beauty as it is shown: that of set_mean() in place of the variance of a layer's

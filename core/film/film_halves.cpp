@@ -63,18 +63,23 @@ std::vector<Rgb> Film::half_variance_of_mean(std::size_t layer, int half) const 
                          half);
 }
 
+Film::PartHalf Film::part_half(std::size_t index, int half) const {
+    const Part& part = parts_.at(index);
+    return {half_of(part.beauty_layers, part.odd_beauty, half),
+            half_variance(part.beauty_layers, part.beauty_squares, part.odd_beauty, part.odd_squares, half)};
+}
+
 Film::HalfBeauty Film::half_beauty(int half) const {
     HalfBeauty result;
     for (auto* plane : {&result.passes, &result.shown, &result.variance}) plane->assign(pixels(), Rgb(0.0f));
     const auto add = [&](std::vector<Rgb>& to, const std::vector<Rgb>& more) {
         for (std::size_t p = 0; p < pixels(); ++p) to[p] += more[p];
     };
-    for (const Part& part : parts_) {
-        const std::vector<Rgb> mean = half_of(part.beauty_layers, part.odd_beauty, half);
-        add(result.passes, mean), add(result.shown, mean);
-        add(result.variance,
-            half_variance(part.beauty_layers, part.beauty_squares, part.odd_beauty, part.odd_squares, half));
-        for (const std::size_t layer : part.beauty_layers) {
+    for (std::size_t part = 0; part < parts(); ++part) {
+        const PartHalf of_part = part_half(part, half);
+        add(result.passes, of_part.mean), add(result.shown, of_part.mean);
+        add(result.variance, of_part.variance);
+        for (const std::size_t layer : parts_[part].beauty_layers) {
             const std::vector<Rgb>& shown = replaced_[layer].halves[std::size_t(half)];
             if (shown.empty()) continue;
             const std::vector<Rgb> own = half_mean(layer, half);
@@ -90,13 +95,13 @@ bool Film::every_layer_is_filtered() const {
     return true;
 }
 
-std::optional<PictureError> Film::error() const {
-    return split_ == PassSplit::halves   ? error_of_halves()
+std::optional<PictureError> Film::error(const ControlPixels& controls) const {
+    return split_ == PassSplit::halves   ? error_of_halves(controls)
            : split_ == PassSplit::groups ? error_of_groups()
                                          : std::nullopt;
 }
 
-std::optional<PictureError> Film::error_of_halves() const {
+std::optional<PictureError> Film::error_of_halves(const ControlPixels& controls) const {
     for (std::size_t i = 0; i < parts(); ++i)
         if (half_passes(i, 1) < 2 || half_passes(i, 0) < 2) return std::nullopt;
     for (std::size_t i = 0; i < layers_.size(); ++i)
@@ -111,15 +116,25 @@ std::optional<PictureError> Film::error_of_halves() const {
     const auto blocks = [&](const RelativeWeights& weights) {
         return halves_error(halves, picture, weights, width_, height_);
     };
+    const auto of_passes = [&](const BlockErrors& errors, const RelativeWeights& weights) {
+        return with_controls(errors.sum(), control_estimate(controls, halves, weights));
+    };
     if (every_layer_is_filtered()) {
-        BlockErrors of_picture = blocks(relative_weights(picture));
-        add_variance_of_weights(of_picture, halves, {relative_weights(a.shown), relative_weights(b.shown)},
+        const RelativeWeights weights = relative_weights(picture);
+        BlockErrors errors = blocks(weights);
+        SquaredError of_picture = of_passes(errors, weights);
+        const double before = errors.sum().variance;
+        add_variance_of_weights(errors, halves, {relative_weights(a.shown), relative_weights(b.shown)},
                                 width_);
-        return of_picture.of_picture();
+        of_picture.variance += errors.sum().variance - before;
+        return error_interval(of_picture);
     }
+    const auto interval = [&](const RelativeWeights& weights) {
+        return error_interval(of_passes(blocks(weights), weights));
+    };
     const PictureError low =
-        blocks(relative_weights(picture, shown_variance_of_mean(1.0), width_, height_)).of_picture();
-    const PictureError high = blocks(weights_of_halves(a.shown, b.shown, width_, height_)).of_picture();
+        interval(relative_weights(picture, shown_variance_of_mean(1.0), width_, height_));
+    const PictureError high = interval(weights_of_halves(a.shown, b.shown, width_, height_));
     return PictureError::of_all({low, high});
 }
 

@@ -10,10 +10,6 @@ namespace {
 
 constexpr double quantile = 1.96;  ///< of the normal distribution, 95 % within
 
-double product(const Rgb& a, const Rgb& b, const Rgb& c, const Rgb& d) {
-    return glm::dot(glm::dvec3(a) - glm::dvec3(b), glm::dvec3(c) - glm::dvec3(d)) / 3.0;
-}
-
 /// Sums over the pixels of a block, each weighted by w.
 struct Sums {
     double residuals = 0.0;                        ///< <r_a, r_b>
@@ -28,9 +24,10 @@ struct Sums {
     void add(double w, const std::array<PictureHalf, 2>& halves, std::size_t p) {
         const Rgb &a = halves[0].passes[p], &b = halves[1].passes[p], &fa = halves[0].shown[p],
                   &fb = halves[1].shown[p];
-        const double of_raw = w * product(a, b, a, b), of_both = w * product(a, b, fa, fb);
-        residuals += w * product(a, fa, b, fb), raw += of_raw, both += of_both;
-        shown += w * product(fa, fb, fa, fb);
+        const double of_raw = w * product_of_differences(a, b, a, b),
+                     of_both = w * product_of_differences(a, b, fa, fb);
+        residuals += w * product_of_differences(a, fa, b, fb), raw += of_raw, both += of_both;
+        shown += w * product_of_differences(fa, fb, fa, fb);
         raw_squared += of_raw * of_raw, left_squared += sqr(of_raw - 2.0 * of_both);
         const double va = mean_of_channels(halves[0].variance[p]),
                      vb = mean_of_channels(halves[1].variance[p]);
@@ -81,8 +78,8 @@ std::size_t BlockErrors::index_of(std::size_t pixel, int width) const {
     return std::size_t(y / size * columns + x / size);
 }
 
-PictureError BlockErrors::of_picture() const {
-    return error_interval({sum_of(noise), sum_of(rest), sum_of(variance), sum_of(norm)});
+SquaredError BlockErrors::sum() const {
+    return {sum_of(noise), sum_of(rest), sum_of(variance), sum_of(norm)};
 }
 
 PictureError BlockErrors::of_block(std::size_t block) const {
@@ -123,7 +120,8 @@ void add_variance_of_weights(BlockErrors& blocks, const std::array<PictureHalf, 
     for (std::size_t p = 0; p < halves[0].passes.size(); ++p) {
         const Rgb &a = halves[0].passes[p], &b = halves[1].passes[p], &fa = halves[0].shown[p],
                   &fb = halves[1].shown[p];
-        const double error = 0.25 * product(fa, fb, fa, fb) + product(a, fa, b, fb);
+        const double error =
+            0.25 * product_of_differences(fa, fb, fa, fb) + product_of_differences(a, fa, b, fb);
         double difference = 0.0;
         for (const auto& [of_half, sign] : {std::pair(&weights[0], 1.0), std::pair(&weights[1], -1.0)})
             if (of_half->norm > 0.0) difference += sign * of_half->weight[p] / of_half->norm;

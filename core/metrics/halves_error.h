@@ -86,8 +86,9 @@ struct BlockErrors {
     std::vector<double> norm;        ///< sum w |r|^2 of a block
 
     std::size_t index_of(std::size_t pixel, int width) const;  ///< of the block of a pixel
-    PictureError of_picture() const;                           ///< of all blocks together
-    PictureError of_block(std::size_t block) const;            ///< of one, relative to its own light
+    SquaredError sum() const;                                  ///< of all blocks together
+    PictureError of_picture() const { return error_interval(sum()); }
+    PictureError of_block(std::size_t block) const;  ///< of one, relative to its own light
 };
 
 /// `r`: the picture, whose light the errors are relative to. Throws std::invalid_argument when a size does

@@ -19,6 +19,10 @@ namespace mote::core {
 
 /// |c|^2
 inline double mean_square(const glm::dvec3& c) { return glm::dot(c, c) / 3.0; }
+/// (a - b) (c - d), averaged over channels.
+inline double product_of_differences(const Rgb& a, const Rgb& b, const Rgb& c, const Rgb& d) {
+    return glm::dot(glm::dvec3(a) - glm::dvec3(b), glm::dvec3(c) - glm::dvec3(d)) / 3.0;
+}
 inline double mean_of_channels(const Rgb& c) { return (double(c.x) + double(c.y) + double(c.z)) / 3.0; }
 
 /// |c|^2 that a pixel has for certain, by three standard deviations.

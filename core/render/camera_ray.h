@@ -40,7 +40,8 @@ inline CameraRay camera_ray(const Camera& camera, const PassContext& pass, int x
 inline Ray camera_ray(const Camera& camera, const RenderOptions& options, const PassContext& pass, int x,
                       int y) {
     Sampler sampler = pixel_sampler(options, pass, x, y);
-    return camera_ray(camera, pass, x, y, sampler).ray;
+    const Vec2i pixel = options.columns.at(x, y);
+    return camera_ray(camera, pass, pixel.x, pixel.y, sampler).ray;
 }
 
 }  // namespace mote::core

@@ -24,7 +24,8 @@ std::optional<std::string> content_of_checkpoint(const std::string& path) {
     return reader->text();
 }
 
-void read_into(std::span<const std::byte> bytes, const CheckpointKey& key, Film& film) {
+void read_into(std::span<const std::byte> bytes, const CheckpointKey& key, Film& film,
+               ControlPasses& controls) {
     HeadedFile file = read_headed_file(bytes, checkpoint_file);
     ByteReader& reader = file.fields;
     const auto seed = reader.number<std::uint64_t>();
@@ -46,7 +47,13 @@ void read_into(std::span<const std::byte> bytes, const CheckpointKey& key, Film&
     if (reader.text() != key.content_hash)
         throw InputError("of another render: the scene, a file that it names, or an option has changed");
     try {
+        ControlPasses read = controls;
+        if (!reader.empty()) {
+            const auto of_controls = reader.raw(reader.number<std::uint64_t>());
+            if (controls.can_choose()) read.deserialize(of_controls);
+        }
         film.deserialize(file.film);
+        controls = std::move(read);
     } catch (const InputError& error) {
         throw InputError(std::string("damaged: ") + error.what());
     }
@@ -82,7 +89,7 @@ void remove_checkpoint(const std::string& path, const std::string& content_hash)
 }
 
 void write_checkpoint(const std::string& path, const CheckpointKey& key, const Film& film,
-                      const MemoryBudget& memory) {
+                      const MemoryBudget& memory, const ControlPasses& controls) {
     require_own_checkpoint(path, key.content_hash);
     ByteWriter head;
     head.number(key.seed);
@@ -91,10 +98,19 @@ void write_checkpoint(const std::string& path, const CheckpointKey& key, const F
     head.number(std::uint32_t(film.layers().size()));
     for (const Layer& layer : film.layers()) head.text(layer.name);
     head.text(key.content_hash);
+    if (!controls.empty()) {
+        const std::vector<std::byte> bytes = controls.serialize();
+        head.number(std::uint64_t(bytes.size())), head.raw(bytes.data(), bytes.size());
+    }
     write_headed_file(path, checkpoint_file, head, film.serialize(memory));
 }
 
 bool read_checkpoint(const std::string& path, const CheckpointKey& key, Film& film) {
+    ControlPasses none;
+    return read_checkpoint(path, key, film, none);
+}
+
+bool read_checkpoint(const std::string& path, const CheckpointKey& key, Film& film, ControlPasses& controls) {
     if (!std::filesystem::exists(path)) return false;
     std::vector<std::byte> bytes;
     try {
@@ -103,7 +119,7 @@ bool read_checkpoint(const std::string& path, const CheckpointKey& key, Film& fi
         throw InputError(std::string("cannot resume: ") + error.what(), {path, 0});
     }
     try {
-        read_into(bytes, key, film);
+        read_into(bytes, key, film, controls);
     } catch (const InputError& error) {
         throw InputError(std::string("cannot resume: this checkpoint is ") + error.what(), {path, 0});
     }

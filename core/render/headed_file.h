@@ -39,6 +39,7 @@ class ByteWriter {
 class ByteReader {
   public:
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    bool empty() const { return bytes_.empty(); }  ///< nothing is left
     std::span<const std::byte> raw(std::uint64_t size) {
         if (size > bytes_.size()) throw InputError("damaged (its length is wrong)");
         const auto result = bytes_.first(std::size_t(size));

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/film/pass_image.h"
+#include "core/film/pixel_columns.h"
 #include "core/film/tiles.h"
 #include "core/math/sampler.h"
 #include "core/math/vec.h"
@@ -36,7 +37,7 @@ class Scene;
 
 struct RenderOptions {
     std::uint64_t seed = 0;                    ///< of all random numbers
-    int width = 0, height = 0;                 ///< of the film [pixels]
+    int width = 0, height = 0;                 ///< of the film, or of the image of `columns` [pixels]
     SamplerKind sampler = SamplerKind::sobol;  ///< of eye and light paths
     CancelToken cancelled = {};                ///< prepare() may throw Cancelled once it is set
     /// Wanted cells (Layer::transport). The layers of the others may hold anything, and nothing should be
@@ -44,7 +45,8 @@ struct RenderOptions {
     TransportSet cells = TransportSet::all();
     /// Passes fill the layer of light that is missing (Layer::missing), where the method has one.
     bool estimates_missing = false;
-    MemoryBudget memory = {};  ///< what maps, trees, points and lights may take
+    MemoryBudget memory = {};   ///< what maps, trees, points and lights may take
+    PixelColumns columns = {};  ///< what passes show instead of the film; Integrator::renders_columns()
 };
 
 /// Where within pixel (x, y) a sample falls so that its plain mean is the filtered picture (filter importance
@@ -76,6 +78,15 @@ class Estimator {
     /// Fills the layers of a part with one independent estimate, and calls image.finish() for every pixel
     /// whose light is complete. Returns false, or throws Cancelled, when it was cancelled half-way.
     virtual bool pass(const PassContext& context, PassImage& image) = 0;
+    /// Fills an image of those pixels with one layer, the light of a part that belongs to the beauty,
+    /// independent of its passes (core/film/control_passes.h). Returns false, or throws, as pass(); always of
+    /// the same pixels.
+    virtual bool control_pass(const PixelColumns& /*pixels*/, const PassContext& /*context*/,
+                              PassImage& /*light*/) {
+        return false;
+    }
+    /// True for a part with control passes.
+    virtual bool has_control_passes(std::size_t /*part*/) const { return false; }
     /// The part that has the next pass. Depends on the film alone, so that it is the same after an
     /// interruption.
     virtual std::size_t next_part(const Film& /*film*/) const { return 0; }
@@ -107,6 +118,9 @@ class Integrator : public Object {
     /// True if Estimator::finish() reads and writes layers of the film: then it must be the film's only
     /// method.
     virtual bool works_on_mean() const { return false; }
+    /// True where its pixels are independent of each other, whichever they are: prepare() can have
+    /// RenderOptions::columns.
+    virtual bool renders_columns() const { return false; }
     /// The layers it fills, in order; those that are not auxiliary add up to the beauty.
     virtual std::vector<Layer> layers(const Scene& scene) const = 0;
     /// Techniques that will run for this scene, with reasons.

@@ -60,8 +60,9 @@ std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
 }
 
 PassRunner::PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
-                       std::vector<HitFeature> features, CancelToken cancelled, const MemoryBudget& memory)
-    : film_(film), filter_(film_filter(scene)) {
+                       std::vector<HitFeature> features, CancelToken cancelled, const MemoryBudget& memory,
+                       ControlPasses controls)
+    : film_(film), controls_(std::move(controls)), seed_(seed), filter_(film_filter(scene)) {
     RenderOptions options = render_options(scene, seed, film.kept().split, cancelled);
     options.memory = memory;
     estimator_ = timed_prepare(scene, integrator, options, build_seconds_);
@@ -81,21 +82,46 @@ bool PassRunner::run_pass(const std::atomic<bool>& cancelled) {
     image.clear();
     const PassContext context{film_.next_pass(part_), *filter_, cancelled, part_};
     const double work = counted_work();
-    const auto ends = [&] {
-        try {
-            if (!estimator_->pass(context, image)) return false;
-            return !features_ || part_ > 0 || features_->fill(context, image);
-        } catch (const Cancelled&) {
-            return false;
-        }
-    };
-    if (!ends()) {
-        if (!cancelled.load(std::memory_order_relaxed))
+    const auto has_ended = [&](bool filled) {
+        if (!filled && !cancelled.load(std::memory_order_relaxed))
             throw std::logic_error("a pass ended early without being cancelled");
+        return filled;
+    };
+    const bool has_control = !controls_.empty() && estimator_->has_control_passes(part_);
+    if (!has_ended(fill(context, image))) return false;
+    const double done = counted_work() - work;  // of the picture: what depends on it is as without control
+    if (has_control && !has_ended(fill_control(context))) return false;
+    if (has_control) controls_.add_pass(control_, part_);
+    film_.add_pass(image, part_, done);
+    return true;
+}
+
+bool PassRunner::fill(const PassContext& context, PassImage& image) {
+    try {
+        if (!estimator_->pass(context, image)) return false;
+        return !features_ || part_ > 0 || features_->fill(context, image);
+    } catch (const Cancelled&) {
         return false;
     }
-    film_.add_pass(image, part_, counted_work() - work);
-    return true;
+}
+
+void PassRunner::choose_controls() {
+    bool any = false;
+    for (std::size_t part = 0; part < film_.parts(); ++part)
+        any = any || estimator_->has_control_passes(part);
+    if (any && controls_.can_choose()) controls_.choose(film_, seed_);
+}
+
+bool PassRunner::fill_control(PassContext context) {
+    const PixelColumns& pixels = controls_.columns();
+    if (control_.width() != pixels.columns()) control_ = PassImage(pixels.columns(), pixels.rows(), 1);
+    context.index = controls_.next_pass(part_);
+    control_.clear();
+    try {
+        return estimator_->control_pass(pixels, context, control_);
+    } catch (const Cancelled&) {
+        return false;
+    }
 }
 
 double PassRunner::counted_work() const {

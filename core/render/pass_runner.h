@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/film/control_passes.h"
 #include "core/film/film.h"
 #include "core/render/first_hit_features.h"
 #include "core/render/integrator.h"
@@ -29,11 +30,12 @@ RenderOptions render_options(const Scene& scene, std::uint64_t seed, PassSplit s
 class PassRunner {
   public:
     /// Calls Integrator::prepare(), which has `memory`. `film` has the size of the scene's film and the
-    /// layers of film_layers(); it may hold the first passes already. Scene and film must outlive the runner.
-    /// Throws InputError for an unknown filter or sampler, and Cancelled.
+    /// layers of film_layers(); it may hold the first passes already, and `controls` the first control
+    /// passes, which follow those of parts that have them. Scene and film must outlive the runner. Throws
+    /// InputError for an unknown filter or sampler, and Cancelled.
     PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
                std::vector<HitFeature> features = {}, CancelToken cancelled = {},
-               const MemoryBudget& memory = {});
+               const MemoryBudget& memory = {}, ControlPasses controls = {});
 
     /// Adds the film's next pass, of the part that the estimator wants. Returns false, with the film
     /// unchanged, when it was cancelled.
@@ -45,14 +47,23 @@ class PassRunner {
     /// The pass that was added last: the layers of last_part().
     const PassImage& last_pass() const { return images_[part_]; }
     std::size_t last_part() const { return part_; }
+    const ControlPasses& controls() const { return controls_; }
+    /// Chooses the pixels of control passes, where there are to be any, of the film, which
+    /// Estimator::finish() has worked on. Does nothing where they are chosen.
+    void choose_controls();
     Estimator& estimator() { return *estimator_; }
     void add_statistics(Statistics& statistics) const;       ///< of the estimator and of the features
     double build_seconds() const { return build_seconds_; }  ///< wall time of prepare()
 
   private:
     double counted_work() const;  ///< so far
+    bool fill(const PassContext& context, PassImage& image);
+    bool fill_control(PassContext context);
 
     Film& film_;
+    ControlPasses controls_;
+    PassImage control_{1, 1, 1};  ///< of the last control pass
+    std::uint64_t seed_;
     std::unique_ptr<PixelFilter> filter_;
     double build_seconds_ = 0.0;
     std::unique_ptr<Estimator> estimator_;

@@ -81,7 +81,7 @@ class PassLoop {
     std::optional<PictureError> stated(const Film& film) const {
         if (request_.split == PassSplit::whole || !std::isfinite(known(1.0)) || found_no_light())
             return std::nullopt;
-        return film.error();
+        return film.error(runner_.controls().pixels(film));
     }
     /// The variance of 64 normal samples has a relative standard error of sqrt(2 / 63), a sixth; that of
     /// fewer, or of light that few paths meet, may say nothing.
@@ -126,7 +126,7 @@ class PassLoop {
         checkpoint_time_ = begin;
         try {
             write_checkpoint(request_.checkpoint_path, {request_.content_hash, request_.seed}, result_.film,
-                             request_.memory);
+                             request_.memory, runner_.controls());
             result_.checkpoint_problem.clear();
         } catch (const InputError& error) {  // a full disk may have room again in a minute
             result_.checkpoint_problem = std::string("no checkpoint: ") + error.what();
@@ -256,6 +256,7 @@ class PassLoop {
                                        .seconds_to_finish(result_.film)
                                        .value_or(half_if_first * seconds_since(begin));
         const std::optional<PictureError> error = stated(result_.film);
+        if (error && !preview && stop_.error) runner_.choose_controls();
         look(error);
         const double finished = changes_noise() ? result_.film.noise() : 0.0;
         if (request_.split != PassSplit::whole) finished_error_ = error.value_or(PictureError());
@@ -306,9 +307,9 @@ class PassLoop {
     Clock::time_point noise_time_ = start_, checkpoint_time_ = start_;
 };
 
-void resume(const RenderRequest& request, RenderResult& result) {
+void resume(const RenderRequest& request, RenderResult& result, ControlPasses& controls) {
     if (request.checkpoint_path.empty()) throw std::logic_error("resuming needs the path of a checkpoint");
-    if (read_checkpoint(request.checkpoint_path, {request.content_hash, request.seed}, result.film))
+    if (read_checkpoint(request.checkpoint_path, {request.content_hash, request.seed}, result.film, controls))
         result.resumed_at = result.film.pass_count();
     else
         result.statistics.warnings.push_back("no checkpoint '" + printable(request.checkpoint_path) +
@@ -343,28 +344,39 @@ void begin_range(const PassRange& range, const Estimator& estimator, Film& film)
     estimator.part_of_pass(range.first);  // also of the first pass it must be known
 }
 
-}  // namespace
-
-RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request) {
-    const FilmSettings& settings = scene.film();
-    if (!request.checkpoint_path.empty() && !request.resume)
-        require_own_checkpoint(request.checkpoint_path, request.content_hash);
+StopRule stop_rule(const RenderRequest& request, const FilmSettings& settings) {
     StopRule stop = request.stop;
     if (stop.error && request.split == PassSplit::whole)
         throw InputError("the error of this image is not known, and a limit on it would not end the render");
     if (!stop.passes && !stop.seconds && !stop.noise && !stop.error && !request.enough)
         stop.passes = std::uint32_t(settings.sample_count);
     if (request.range) stop = {request.range->end - request.range->first, {}, {}, {}};
+    return stop;
+}
+
+}  // namespace
+
+RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request) {
+    const FilmSettings& settings = scene.film();
+    if (!request.checkpoint_path.empty() && !request.resume)
+        require_own_checkpoint(request.checkpoint_path, request.content_hash);
+    const StopRule stop = stop_rule(request, settings);
     const std::vector<Layer> layers = film_layers(scene, integrator, request.features);
     const FilmMemory needed(settings.width, settings.height, layers, request.all_squares, stop.passes,
                             request.split);
-    needed.require(request.memory, request.resume ? needed.sums() : 0.0);  // a checkpoint is read beside it
+    const bool has_controls = stop.error && request.split == PassSplit::halves;
+    const double of_controls =
+        has_controls ? ControlPasses::memory(settings.width, settings.height, layers.size()) : 0.0;
+    // A checkpoint is read beside it.
+    needed.require(request.memory, of_controls + (request.resume ? needed.sums() : 0.0));
     RenderResult result = with_memory_for(needed.purpose() + memory_text(needed.peak()), [&] {
         return RenderResult{
             Film(settings.width, settings.height, layers, request.all_squares, request.split), {}, false, 0};
     });
+    ControlPasses controls;
+    if (has_controls) controls = ControlPasses(result.film);
     if (request.begin_with) begin_with(*request.begin_with, result.film);
-    if (request.resume) resume(request, result);  // before the work of prepare(): it may be refused
+    if (request.resume) resume(request, result, controls);  // before the work of prepare(): it may be refused
     if (!request.range && result.film.first_pass() > 0)
         throw InputError("cannot resume: this checkpoint holds passes from " +
                          std::to_string(result.film.first_pass()) + " on, those before are missing");
@@ -374,7 +386,8 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     try {
         with_memory_for("what '" + integrator.type() + "' builds before its passes", [&] {
             runner.emplace(scene, integrator, request.seed, result.film, request.features, token,
-                           request.memory.without(needed.peak() - needed.begin()));
+                           request.memory.without(needed.peak() - needed.begin() + of_controls),
+                           std::move(controls));
         });
     } catch (const Cancelled&) {
         result.interrupted = true;
@@ -391,7 +404,7 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     loop.finish_picture(integrator.type());
     loop.state_noise();
     runner->add_statistics(result.statistics);
-    result.statistics.non_finite_samples += result.film.non_finite();
+    result.statistics.non_finite_samples += result.film.non_finite() + runner->controls().non_finite();
     return result;
 }
 

@@ -18,7 +18,8 @@ inline EyeRay make_eye_ray(const core::Scene& scene, const core::RenderOptions& 
                            const core::PassContext& pass, int x, int y, const core::Vec2* lens = nullptr) {
     core::Sampler sampler = core::pixel_sampler(options, pass, x, y);
     core::Rng rng = sampler.make_rng();
-    const auto [ray, film] = core::camera_ray(scene.camera(), pass, x, y, sampler, lens);
+    const core::Vec2i pixel = options.columns.at(x, y);
+    const auto [ray, film] = core::camera_ray(scene.camera(), pass, pixel.x, pixel.y, sampler, lens);
     return {ray, film, sampler, rng};
 }
 

@@ -74,7 +74,7 @@ class LayerFilter {
         const screenspace::FilterFeatures&, screenspace::FilterQuality)>;
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options, const FeatureSettings& features,
                 std::vector<Choice> layers, bool has_variance, MakeFilter make);
-    /// Layers that see the same features, and have passes.
+    /// Layers that see the same features, are alike, and have passes.
     struct Kind {
         screenspace::LayerKind kind;
         std::vector<std::size_t> layers;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/film/film.h"
 #include "core/math/random.h"
@@ -15,6 +16,8 @@ namespace mote::integrators {
 using namespace core;
 
 namespace {
+
+constexpr std::uint64_t control_key = 0x636f6e74726f6cull;
 
 std::uint64_t seed_of_part(std::uint64_t seed, std::size_t part) {
     return part == 0 ? seed : hash_keys(seed, 0x6c61796572ull, part);
@@ -34,6 +37,42 @@ std::string shares_wanted(std::size_t parts) {
         parts);
 }
 
+/// Control passes of a part: its method at the control pixels, by other random numbers.
+class ControlOfPart {
+  public:
+    /// `options`: of the part.
+    ControlOfPart(const Scene& scene, RenderOptions options, const LayerMethod& method)
+        : scene_(scene), options_(std::move(options)), method_(method), image_(1, 1, 1) {
+        options_.seed = hash_keys(options_.seed, control_key);
+    }
+    /// As Estimator::control_pass().
+    bool pass(const PixelColumns& pixels, const PassContext& context, PassImage& light) {
+        if (!estimator_) prepare(pixels);
+        image_.clear();
+        if (!estimator_->pass({context.index, context.filter, context.cancelled}, image_)) return false;
+        for (const std::size_t layer : method_.kept)
+            for (std::size_t i = 0; i < light.layer(0).size(); ++i)
+                light.layer(0)[i] += image_.layer(layer)[i];
+        return true;
+    }
+    void add_statistics(Statistics& statistics) const {
+        if (estimator_) estimator_->add_statistics(statistics);
+    }
+
+  private:
+    void prepare(const PixelColumns& pixels) {
+        options_.columns = pixels;
+        options_.width = pixels.columns(), options_.height = pixels.rows();
+        image_ = PassImage(options_.width, options_.height, method_.layers.size());
+        estimator_ = method_.integrator->prepare(scene_, options_);
+    }
+    const Scene& scene_;
+    RenderOptions options_;
+    LayerMethod method_;
+    PassImage image_;  ///< with all its layers
+    std::unique_ptr<Estimator> estimator_;
+};
+
 class LayersEstimator final : public Estimator {
   public:
     LayersEstimator(const Scene& scene, const RenderOptions& options, const LayerChoice& choice,
@@ -46,8 +85,11 @@ class LayersEstimator final : public Estimator {
             const LayerMethod& method = choice.methods[i];
             RenderOptions own = options;
             own.seed = seed_of_part(options.seed, i), own.cells = method.cells;
-            parts_.push_back({method.integrator->prepare(scene, own), method.kept,
-                              PassImage(options.width, options.height, method.layers.size())});
+            parts_.push_back({method.integrator->prepare(scene, own),
+                              method.kept,
+                              PassImage(options.width, options.height, method.layers.size()),
+                              {}});
+            if (method.integrator->renders_columns()) parts_.back().control.emplace(scene, own, method);
             const auto layers =
                 std::count_if(filter_.layers().begin(), filter_.layers().end(),
                               [&](const auto& f) { return choice.layers[f.layer].part == i; });
@@ -76,6 +118,11 @@ class LayersEstimator final : public Estimator {
         return true;
     }
 
+    bool has_control_passes(std::size_t part) const override { return parts_.at(part).control.has_value(); }
+    bool control_pass(const PixelColumns& pixels, const PassContext& context, PassImage& light) override {
+        return parts_.at(context.part).control.value().pass(pixels, context, light);
+    }
+
     void finish(Film& film, CancelToken cancelled) override { filter_.apply(film, cancelled); }
     bool finish_preview(Film& film, CancelToken cancelled) override {
         return filter_.apply_for_preview(film, cancelled);
@@ -89,7 +136,10 @@ class LayersEstimator final : public Estimator {
     }
 
     void add_statistics(Statistics& statistics) const override {
-        for (const Part& part : parts_) part.estimator->add_statistics(statistics);
+        for (const Part& part : parts_) {
+            part.estimator->add_statistics(statistics);
+            if (part.control) part.control->add_statistics(statistics);
+        }
         filter_.add_statistics(statistics);
     }
 
@@ -98,6 +148,7 @@ class LayersEstimator final : public Estimator {
         std::unique_ptr<Estimator> estimator;
         std::vector<std::size_t> kept;  ///< of its layers
         PassImage image;                ///< with all its layers
+        std::optional<ControlOfPart> control;
     };
     std::vector<Part> parts_;
     std::vector<double> left_;        ///< of the variance of each part, after filtering

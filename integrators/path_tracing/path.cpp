@@ -38,6 +38,7 @@ class Path final : public Integrator {
         plan_caustics(plan, scene, requirements);
         return plan;
     }
+    bool renders_columns() const override { return settings_.guiding.mode == Guiding::off; }
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         return make_path_estimator<false>(scene, options, settings_);
     }

@@ -35,6 +35,7 @@ class Volpath final : public Integrator {
         return transport_layers(scene.has_media(), bounded() ? "_bounded" : "");
     }
     Plan plan(const Scene&, const Requirements& requirements) const override;
+    bool renders_columns() const override { return settings_.guiding.mode == Guiding::off; }
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         if (!scene.has_media()) return make_path_estimator<false>(scene, options, settings_);
         PathSettings settings = settings_;

@@ -234,8 +234,10 @@ TEST_CASE(
     const auto scene = scene_from(box(grey, coloured_fog), 16);
     Film film = rendered(*scene, 1, 1);
     const std::vector<LayerFilter::Choice> choices = {
+        {layer_called(film, "emission"), LayerKind::surface},
         {layer_called(film, "direct"), LayerKind::surface},
         {layer_called(film, "indirect"), LayerKind::surface},
+        {layer_called(film, "single_scattering"), LayerKind::volume},
         {layer_called(film, "multiple_scattering"), LayerKind::volume}};
     const TemporaryFolder folder;
     const Environment stand_in("MOTE_OIDN", MOTE_BINARY_DIR "/stand_ins"),
@@ -255,11 +257,17 @@ TEST_CASE(
     };
     CHECK(film.work(0) > 0.0);  // counted, although the film has one part
     CHECK(film.work(0) < 90.0 * double(film.pixels()));
-    CHECK(runs(film) == "quality 0, noisy features\nquality 0, noisy features\n");
+    const auto of = [](int count, const std::string& run) {
+        std::string all;
+        for (int i = 0; i < count; ++i) all += run;
+        return all;
+    };
+    // Surfaces, light scattered once, and light scattered more often.
+    CHECK(runs(film) == of(3, "quality 0, noisy features\n"));
     add_work(100.0);
-    CHECK(runs(film) == "quality 0\nquality 0\n");
+    CHECK(runs(film) == of(3, "quality 0\n"));
     add_work(1000.0);
-    CHECK(runs(film) == "quality 0\nquality 0\nquality 0\n");
+    CHECK(runs(film) == of(5, "quality 0\n"));
 }
 
 TEST_CASE("A preview by our own filter is its picture", "[layer_filter]") {

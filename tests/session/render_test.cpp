@@ -302,3 +302,38 @@ TEST_CASE("A render with halves or groups continues to the same bits", "[session
     REQUIRE(resumed.error);
     CHECK(resumed.error->high == whole.error->high);
 }
+
+TEST_CASE("A limit on the error has control passes, which continue as they would have gone on",
+          "[session][resume][halves][controls]") {
+    const TemporaryFolder folder;
+    const LoadedScene scene = scene_of("mote_layers", 32, true);
+    RenderSettings settings = passes(13);
+    settings.stop.error = 1e-9;  // never met
+    const Rendered whole = session::render(scene, settings), without = session::render(scene, passes(13));
+    CHECK(whole.image.channels == without.image.channels);  // they are not part of the picture
+    REQUIRE((whole.error && without.error));
+    CHECK(whole.error->high != without.error->high);  // but of its error
+    RenderSettings one_thread = settings;
+    one_thread.threads = 1;
+    CHECK(session::render(scene, one_thread).error->high == whole.error->high);
+
+    settings.stop.passes = 6, settings.checkpoint = folder.file("film.checkpoint");
+    settings.keep_checkpoint = true;
+    session::render(scene, settings);
+    settings.stop.passes = 13, settings.resume = true;
+    const Rendered resumed = session::render(scene, settings);
+    CHECK(resumed.image.channels == whole.image.channels);
+    CHECK(resumed.error->high == whole.error->high);
+    // A limit that is set later has control passes from there on; one that is taken back has none.
+    const bool first = GENERATE(false, true);
+    RenderSettings half = passes(6);
+    half.checkpoint = folder.file("half.checkpoint"), half.keep_checkpoint = true;
+    if (first) half.stop.error = 1e-9;
+    session::render(scene, half);
+    half.stop.passes = 13, half.resume = true;
+    half.stop.error = first ? std::nullopt : std::optional(1e-9);
+    const Rendered changed = session::render(scene, half);
+    CHECK(changed.image.channels == whole.image.channels);
+    REQUIRE(changed.error);
+    CHECK((changed.error->high == without.error->high) == first);
+}

@@ -12,22 +12,38 @@ namespace mote::fuzz {
 
 namespace {
 
-core::Film film_of(std::uint32_t first, std::uint32_t end) {
-    core::Film film = small_film();
+core::Film with_passes(core::Film film, std::uint32_t first, std::uint32_t end) {
     film.begin_at(0, first);
     core::PassImage image(4, 3, 2);
     for (std::size_t i = 0; i < 12; ++i) image.layer(0)[i] = core::Rgb(0.1f * float(i), 0.3f, 1e-3f);
     for (std::uint32_t pass = first; pass < end; ++pass) film.add_pass(image);
     return film;
 }
+core::Film film_of(std::uint32_t first, std::uint32_t end) { return with_passes(small_film(), first, end); }
+
+/// A checkpoint with control passes.
+Bytes checkpoint_with_controls() {
+    const ScratchFile file(".checkpoint");
+    const core::Film film = with_passes(small_film(core::PassSplit::halves), 0, 5);
+    core::ControlPasses controls(film);
+    controls.choose(film, 7);
+    const core::PixelColumns& columns = controls.columns();
+    core::PassImage image(columns.columns(), columns.rows(), 1);
+    for (core::Rgb& light : image.layer(0)) light = core::Rgb(0.5f, 0.3f, 0.1f);
+    for (int pass = 0; pass < 5; ++pass) controls.add_pass(image, 0);
+    core::write_checkpoint(file.path(), {checkpoint_hash, 7}, film, {}, controls);
+    return file.bytes();
+}
 
 }  // namespace
 
-core::Film small_film() { return core::Film(4, 3, {core::Layer{"direct", ""}, core::Layer{"indirect", ""}}); }
+core::Film small_film(core::PassSplit split) {
+    return core::Film(4, 3, {core::Layer{"direct", ""}, core::Layer{"indirect", ""}}, false, split);
+}
 
 std::vector<Bytes> checkpoint_seeds() {
     const ScratchFile file(".checkpoint");
-    std::vector<Bytes> seeds;
+    std::vector<Bytes> seeds{checkpoint_with_controls()};
     for (const std::uint32_t passes : {1u, 16u, 17u}) {
         core::write_checkpoint(file.path(), {checkpoint_hash, 7}, film_of(0, passes));
         seeds.push_back(file.bytes());

@@ -108,7 +108,16 @@ void read_picture(const std::string& path) {
         throw std::logic_error("a picture with other pixels than its size says");
 }
 
+// Of halves with control passes, or of neither.
 void read_checkpoint(const std::string& path) {
+    try {
+        core::Film halves = small_film(core::PassSplit::halves);
+        core::ControlPasses controls(halves);
+        core::read_checkpoint(path, {checkpoint_hash, 7}, halves, controls);
+        halves.error(controls.pixels(halves));
+        return;
+    } catch (const core::InputError&) {
+    }
     core::Film film = small_film();
     core::read_checkpoint(path, {checkpoint_hash, 7}, film);
     film.beauty(), film.beauty_variance_of_mean(), film.noise();

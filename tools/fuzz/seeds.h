@@ -46,7 +46,7 @@ std::vector<Bytes> serialized_seeds();
 std::vector<Bytes> curve_seeds();
 
 /// Film that the checkpoints among the seeds belong to.
-core::Film small_film();
+core::Film small_film(core::PassSplit split = core::PassSplit::whole);
 inline const char* const checkpoint_hash = "0123456789abcdef";
 /// A neighbour that partial films are merged with: the passes after them.
 inline const char* const next_film = "next.film";

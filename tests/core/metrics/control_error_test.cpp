@@ -1,0 +1,135 @@
+// Control pixels make the interval of a picture's error shorter, and it contains the error as often as
+// before.
+#include "core/metrics/control_error.h"
+
+#include <cmath>
+
+#include "core/metrics/relative_error.h"
+#include "tests/core/metrics/noisy_images.h"
+#include "tests/support/catch.h"
+#include "tests/support/coverage.h"
+
+using namespace mote::core;
+using namespace mote::tests::noisy_images;
+
+namespace {
+
+constexpr int cell = 8;  ///< pixels along an edge
+
+/// What is wrong with the control pixels; planted faults.
+enum class Fault { none, shared_noise, of_the_passes, few_pixels };
+
+/// One pixel of each cell, with a sixteenth of a half's variance.
+ControlPixels controls_of(const Image& mu, const Image& a, std::uint64_t seed, Fault fault) {
+    constexpr float quieter = 0.25f;
+    const Image first = noisy(mu, hash_keys(seed, 1)), second = noisy(mu, hash_keys(seed, 2));
+    static const std::vector<float> cells(pixels, float(cell * cell)), halved(pixels, 0.5f * cells[0]);
+    ControlPixels controls{{}, fault == Fault::few_pixels ? halved : cells};
+    Rng rng(hash_keys(seed, 3));
+    for (int y = 0; y < height; y += cell)
+        for (int x = 0; x < width; x += cell) {
+            const Vec2 u = rng.next_vec2();
+            const auto p = std::size_t((y + int(u.y * float(cell))) * width + x + int(u.x * float(cell)));
+            ControlPixel& c = controls.chosen.emplace_back();
+            c.pixel = p;
+            c.mean[0] = mu[p] + quieter * (first[p] - mu[p]);
+            c.mean[1] = fault == Fault::shared_noise ? c.mean[0] : mu[p] + quieter * (second[p] - mu[p]);
+            if (fault == Fault::of_the_passes) c.mean[1] = a[p];
+            c.variance[0] = c.variance[1] = sqr(quieter * deviation(p)) * mu[p] * mu[p];
+        }
+    return controls;
+}
+
+struct Coverage {
+    double contained = 0.0;  ///< share of seeds
+    double surprise = 0.0;   ///< mean of (stated - true squared error) over its standard error
+    double shorter = 0.0;    ///< standard error of the rest over that without controls, on average
+};
+
+Coverage coverage(const Filter& filter, std::uint64_t seeds, Fault fault = Fault::none) {
+    const Image mu = truth();
+    const RelativeWeights weights = relative_weights(mu);
+    Image variance(pixels);
+    for (std::size_t p = 0; p < pixels; ++p) variance[p] = deviation(p) * deviation(p) * mu[p] * mu[p];
+    Coverage result;
+    double differences = 0.0, squares = 0.0;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const Image a = noisy(mu, 2 * seed), b = noisy(mu, 2 * seed + 1), fa = filter(a), fb = filter(b);
+        Image picture(pixels);
+        for (std::size_t p = 0; p < pixels; ++p) picture[p] = 0.5f * (fa[p] + fb[p]);
+        const std::array halves{PictureHalf{a, fa, variance}, PictureHalf{b, fb, variance}};
+        const SquaredError of_halves = halves_error(halves, picture, weights, width, height).sum();
+        const RestEstimate of_controls = control_estimate(controls_of(mu, a, seed, fault), halves, weights);
+        const SquaredError both = with_controls(of_halves, of_controls);
+        CHECK(both.variance <= of_halves.variance);
+        const PictureError said = error_interval(both);
+        const double error = relative_error(picture, mu, weights).error;
+        if (error >= said.low && error <= said.high) result.contained += 1.0 / double(seeds);
+        // That of the control pixels alone.
+        const double difference = both.noise + of_controls.rest - error * error * weights.norm;
+        differences += difference, squares += difference * difference;
+        result.shorter += std::sqrt(both.variance / of_halves.variance) / double(seeds);
+    }
+    result.surprise = differences / std::sqrt(squares);
+    return result;
+}
+
+Image wide(const Image& image) { return boxed(image, 3); }
+Image narrow(const Image& image) { return boxed(image, 1); }
+Image untouched(const Image& image) { return image; }
+
+constexpr std::uint64_t seeds = 400;
+
+}  // namespace
+
+TEST_CASE("The interval with control pixels contains the error in 95 of 100 seeds at least, and is shorter",
+          "[metrics][controls][coverage][statistics]") {
+    for (const auto& filter : {untouched, narrow, wide, clamped}) {
+        const Coverage c = coverage(filter, seeds);
+        CAPTURE(c.contained, c.surprise, c.shorter);
+        CHECK(c.contained > 0.95 - 3.0 * std::sqrt(0.95 * 0.05 / double(seeds)));
+        CHECK(std::fabs(c.surprise) < 4.0);
+        CHECK(c.shorter < 1.0);
+    }
+    CHECK(coverage(wide, 100).shorter < 0.8);
+}
+
+TEST_CASE("Control pixels that share their noise, or stand for fewer pixels, are found out",
+          "[metrics][controls][planted]") {
+    CHECK(std::fabs(coverage(narrow, 100, Fault::shared_noise).surprise) > 4.0);
+    CHECK(std::fabs(coverage(narrow, 100, Fault::of_the_passes).surprise) > 4.0);
+    CHECK(std::fabs(coverage(wide, 100, Fault::few_pixels).surprise) > 4.0);
+}
+
+TEST_CASE("Without control pixels the error is that of the halves", "[metrics][controls]") {
+    const Image mu = truth(), a = noisy(mu, 1), b = noisy(mu, 2);
+    const RelativeWeights weights = relative_weights(mu);
+    const RestEstimate none = control_estimate({}, {PictureHalf{a, a, a}, PictureHalf{b, b, b}}, weights);
+    CHECK(std::isinf(none.variance));
+    const SquaredError before{1.0, 2.0, 3.0, 4.0}, after = with_controls(before, none);
+    CHECK(after.rest == before.rest);
+    CHECK(after.variance == before.variance);
+    // Two of equal variance are averaged; one that is exact is taken.
+    CHECK(with_controls(before, {4.0, 3.0}).rest == Approx(3.0));
+    CHECK(with_controls(before, {4.0, 3.0}).variance == Approx(1.5));
+    CHECK(with_controls(before, {4.0, 0.0}).rest == 4.0);
+    CHECK(with_controls({1.0, 2.0, 0.0, 4.0}, {4.0, 0.0}).rest == 2.0);
+    CHECK(with_controls(before, {4.0, 3.0}).noise == before.noise);
+    CHECK(with_controls(before, {4.0, 3.0}).norm == before.norm);
+}
+
+TEST_CASE("One control pixel for each pixel, without noise, makes the error exact", "[metrics][controls]") {
+    const Image mu = truth(), a = noisy(mu, 1), b = noisy(mu, 2), fa = wide(a), fb = wide(b),
+                none(pixels, Rgb(0.0f));
+    const RelativeWeights weights = relative_weights(mu);
+    const std::vector<float> ones(pixels, 1.0f);
+    ControlPixels controls{{}, ones};
+    for (std::size_t p = 0; p < pixels; ++p) controls.chosen.push_back({p, {mu[p], mu[p]}, {}});
+    const std::array halves{PictureHalf{a, fa, none}, PictureHalf{b, fb, none}};
+    Image picture(pixels);
+    for (std::size_t p = 0; p < pixels; ++p) picture[p] = 0.5f * (fa[p] + fb[p]);
+    const double noise = halves_error(halves, picture, weights, width, height).sum().noise;
+    const double error = relative_error(picture, mu, weights).error;
+    CHECK(noise + control_estimate(controls, halves, weights).rest ==
+          Approx(error * error * weights.norm).epsilon(1e-6));
+}
