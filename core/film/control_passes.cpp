@@ -51,7 +51,7 @@ std::vector<double> importance_for_error(const Film& film) {
     for (std::size_t p = 0; p < film.pixels(); ++p) {
         const double w = weights.weight[p];
         left[p] = w * product_of_differences(a.shown[p], b.shown[p], a.shown[p], b.shown[p]);
-        // Of both halves: a rare bright path is in one alone.
+        // The geometric mean of both halves: a rare bright path is in one alone.
         noise[p] = w * std::sqrt(mean_of_channels(a.variance[p]) * mean_of_channels(b.variance[p]));
     }
     left = smoothed(left, film.width(), film.height()), noise = smoothed(noise, film.width(), film.height());
@@ -81,18 +81,18 @@ void ControlPasses::choose(const Film& film, std::uint64_t seed) {
         while (p + 1 < importance.size() && before + importance[p] <= at) before += importance[p++];
         indices.push_back(std::uint32_t(p));
     }
-    std::vector<float> stand_for;
-    for (const double of_pixel : importance) stand_for.push_back(float(share_of_one / of_pixel));
-    set_pixels(std::move(indices), std::move(stand_for));
+    std::vector<float> represented;
+    for (const double of_pixel : importance) represented.push_back(float(share_of_one / of_pixel));
+    set_pixels(std::move(indices), std::move(represented));
 }
 
-void ControlPasses::set_pixels(std::vector<std::uint32_t> indices, std::vector<float> stand_for) {
+void ControlPasses::set_pixels(std::vector<std::uint32_t> indices, std::vector<float> represented) {
     std::vector<Vec2i> pixels;
     for (const std::uint32_t index : indices)
         pixels.emplace_back(int(index % std::uint32_t(width_)), int(index / std::uint32_t(width_)));
     const double samples = share * double(width_) * double(height_);
     columns_ = {std::move(pixels), std::max(1, int(std::lround(samples / double(count_))))};
-    indices_ = std::move(indices), stand_for_ = std::move(stand_for);
+    indices_ = std::move(indices), represented_ = std::move(represented);
 }
 
 void ControlPasses::add_pass(const PassImage& light, std::size_t part) {
@@ -128,16 +128,16 @@ ControlPixels ControlPasses::pixels(const Film& film) const {
                 controls[i].variance[std::size_t(half)] += of_part.variance[p];
             }
         }
-    return {std::move(controls), stand_for_};
+    return {std::move(controls), represented_};
 }
 
 std::vector<std::byte> ControlPasses::serialize() const {
     const std::vector<std::byte> sums = sums_.serialize();
     const std::size_t of_indices = indices_.size() * sizeof(std::uint32_t),
-                      of_weights = stand_for_.size() * sizeof(float);
+                      of_weights = represented_.size() * sizeof(float);
     std::vector<std::byte> bytes(of_indices + of_weights + sums.size());
     std::memcpy(bytes.data(), indices_.data(), of_indices);
-    std::memcpy(bytes.data() + of_indices, stand_for_.data(), of_weights);
+    std::memcpy(bytes.data() + of_indices, represented_.data(), of_weights);
     std::memcpy(bytes.data() + of_indices + of_weights, sums.data(), sums.size());
     return bytes;
 }
@@ -148,15 +148,15 @@ void ControlPasses::deserialize(std::span<const std::byte> bytes) {
     if (count_ == 0 || bytes.size() < of_indices + of_weights)
         throw InputError("the control passes are cut short");
     std::vector<std::uint32_t> indices(count_);
-    std::vector<float> stand_for(pixels);
+    std::vector<float> represented(pixels);
     std::memcpy(indices.data(), bytes.data(), of_indices);
-    std::memcpy(stand_for.data(), bytes.data() + of_indices, of_weights);
+    std::memcpy(represented.data(), bytes.data() + of_indices, of_weights);
     const bool indices_fit = std::ranges::all_of(indices, [&](std::uint32_t i) { return i < pixels; }),
                numbers_fit = std::ranges::all_of(
-                   stand_for, [&](float a) { return a > 0.0f && a <= 4.0f * float(pixels); });
+                   represented, [&](float a) { return a > 0.0f && a <= 4.0f * float(pixels); });
     if (!indices_fit || !numbers_fit) throw InputError("the control passes are damaged");
     sums_.deserialize(bytes.subspan(of_indices + of_weights));
-    set_pixels(std::move(indices), std::move(stand_for));
+    set_pixels(std::move(indices), std::move(represented));
 }
 
 }  // namespace mote::core

@@ -54,11 +54,11 @@ class ControlPasses {
 
   private:
     bool has_halves(std::size_t part) const;
-    void set_pixels(std::vector<std::uint32_t> indices, std::vector<float> stand_for);
+    void set_pixels(std::vector<std::uint32_t> indices, std::vector<float> represented);
     int width_ = 0, height_ = 0;          ///< of the film
     std::size_t count_ = 0;               ///< of pixels, once they are chosen
     std::vector<std::uint32_t> indices_;  ///< of each pixel in the film
-    std::vector<float> stand_for_;        ///< of each pixel of the film: ControlPixels::stand_for
+    std::vector<float> represented_;      ///< of each pixel of the film: ControlPixels::represented
     PixelColumns columns_;
     Film sums_;  ///< one row; one layer a part
 };

@@ -11,13 +11,13 @@ namespace {
 struct LeftNoise {
     double sum = 0.0, squares = 0.0;
 };
-LeftNoise left_noise(std::span<const float> stand_for, const std::array<PictureHalf, 2>& halves,
+LeftNoise left_noise(std::span<const float> represented, const std::array<PictureHalf, 2>& halves,
                      const RelativeWeights& weights) {
     LeftNoise result;
-    for (std::size_t p = 0; p < stand_for.size(); ++p) {
+    for (std::size_t p = 0; p < represented.size(); ++p) {
         const Rgb &fa = halves[0].shown[p], &fb = halves[1].shown[p];
         const double y = weights.weight[p] * product_of_differences(fa, fb, fa, fb);
-        result.sum += y, result.squares += double(stand_for[p]) * y * y;
+        result.sum += y, result.squares += double(represented[p]) * y * y;
     }
     return result;
 }
@@ -31,13 +31,13 @@ RestEstimate control_estimate(const ControlPixels& controls, const std::array<Pi
     double rest = 0.0, squares = 0.0, variance = 0.0;
     for (const ControlPixel& c : controls.chosen) {
         const Rgb &fa = halves[0].shown[c.pixel], &fb = halves[1].shown[c.pixel];
-        const double weight = double(controls.stand_for[c.pixel]) * weights.weight[c.pixel];
+        const double weight = double(controls.represented[c.pixel]) * weights.weight[c.pixel];
         const double term = weight * product_of_differences(c.mean[0], fa, c.mean[1], fb);
         rest += term, squares += term * term;
         const double va = mean_of_channels(c.variance[0]), vb = mean_of_channels(c.variance[1]);
         variance += weight * weight * (va * vb + 0.5 * product_of_differences(fa, fb, fa, fb) * (va + vb));
     }
-    const LeftNoise y = left_noise(controls.stand_for, halves, weights);
+    const LeftNoise y = left_noise(controls.represented, halves, weights);
     variance += 0.25 * y.squares;
     if (y.sum > 0.0) variance += rest * rest * std::max(0.0, y.squares / (y.sum * y.sum) - 1.0 / m);
     const double spread = m > 1.0 ? (m * squares - rest * rest) / (m - 1.0) : 0.0;

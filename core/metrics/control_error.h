@@ -35,8 +35,8 @@ struct ControlPixel {
 
 /// All that is known of control pixels; none: empty.
 struct ControlPixels {
-    std::vector<ControlPixel> chosen;  ///< one may be chosen more than once
-    std::span<const float> stand_for;  ///< A of every pixel of the picture
+    std::vector<ControlPixel> chosen;    ///< one may be chosen more than once
+    std::span<const float> represented;  ///< A of every pixel of the picture
 };
 
 /// Estimate of sum w <e_a, e_b> over the picture.

@@ -43,11 +43,12 @@ core::Film small_film(core::PassSplit split) {
 
 std::vector<Bytes> checkpoint_seeds() {
     const ScratchFile file(".checkpoint");
-    std::vector<Bytes> seeds{checkpoint_with_controls()};
+    std::vector<Bytes> seeds;
     for (const std::uint32_t passes : {1u, 16u, 17u}) {
         core::write_checkpoint(file.path(), {checkpoint_hash, 7}, film_of(0, passes));
         seeds.push_back(file.bytes());
     }
+    seeds.push_back(checkpoint_with_controls());
     return seeds;
 }
 

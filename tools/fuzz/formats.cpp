@@ -108,7 +108,7 @@ void read_picture(const std::string& path) {
         throw std::logic_error("a picture with other pixels than its size says");
 }
 
-// Of halves with control passes, or of neither.
+// It has halves and control passes, or neither.
 void read_checkpoint(const std::string& path) {
     try {
         core::Film halves = small_film(core::PassSplit::halves);

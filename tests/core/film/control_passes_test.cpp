@@ -63,7 +63,7 @@ ControlPasses controls_after(const Film& film, std::uint32_t passes, std::size_t
 
 }  // namespace
 
-TEST_CASE("Control pixels stand for all pixels, and are more where errors are expected", "[film][controls]") {
+TEST_CASE("Control pixels represent all pixels, and are more where errors are expected", "[film][controls]") {
     for (const Vec2i& size : {Vec2i(1, 1), Vec2i(7, 1), Vec2i(96, 64), Vec2i(320, 200), Vec2i(641, 399)}) {
         CAPTURE(size.x, size.y);
         const Film film = filtered_film(size.x, size.y);
@@ -82,14 +82,14 @@ TEST_CASE("Control pixels stand for all pixels, and are more where errors are ex
             const ControlPixels known = controls.pixels(film);
             const std::vector<ControlPixel>& pixels = known.chosen;
             REQUIRE(int(pixels.size()) == columns.columns());
-            REQUIRE(known.stand_for.size() == film.pixels());
+            REQUIRE(known.represented.size() == film.pixels());
             for (std::size_t i = 0; i < pixels.size(); ++i) {
                 const Vec2i at = columns.at(int(i), 0);
                 CHECK(pixels[i].pixel == std::size_t(at.y * size.x + at.x));
                 CHECK(columns.at(int(i), columns.rows() - 1) == at);
-                const double stands_for = double(known.stand_for[pixels[i].pixel]);
-                CHECK(stands_for == Approx(all / double(pixels.size()) / importance[pixels[i].pixel]));
-                left += 2 * at.x < size.x, sum += stands_for / trials, chosen += 1.0;
+                const double represented = double(known.represented[pixels[i].pixel]);
+                CHECK(represented == Approx(all / double(pixels.size()) / importance[pixels[i].pixel]));
+                left += 2 * at.x < size.x, sum += represented / trials, chosen += 1.0;
             }
             const double samples = double(columns.columns()) * double(columns.rows());
             if (film.pixels() > 1000)

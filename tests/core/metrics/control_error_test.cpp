@@ -16,7 +16,7 @@ namespace {
 
 constexpr int cell = 8;  ///< pixels along an edge
 
-/// What is wrong with the control pixels; planted faults.
+/// Planted faults of control pixels.
 enum class Fault { none, shared_noise, of_the_passes, few_pixels };
 
 /// One pixel of each cell, with a sixteenth of a half's variance.
@@ -94,7 +94,7 @@ TEST_CASE("The interval with control pixels contains the error in 95 of 100 seed
     CHECK(coverage(wide, 100).shorter < 0.8);
 }
 
-TEST_CASE("Control pixels that share their noise, or stand for fewer pixels, are found out",
+TEST_CASE("Control pixels that share their noise, or represent fewer pixels, are found out",
           "[metrics][controls][planted]") {
     CHECK(std::fabs(coverage(narrow, 100, Fault::shared_noise).surprise) > 4.0);
     CHECK(std::fabs(coverage(narrow, 100, Fault::of_the_passes).surprise) > 4.0);
