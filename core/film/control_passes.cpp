@@ -16,7 +16,7 @@ namespace mote::core {
 namespace {
 
 constexpr double pixels_for_each = 100.0;  ///< of the film, about
-constexpr double min_count = 64.0, max_count = 4096.0;
+constexpr double min_count = 256.0, max_count = 4096.0;
 constexpr std::uint64_t choice_key = 0x636f6e74726f6cull;
 
 std::vector<Layer> layer_of_each_part(std::size_t parts) {

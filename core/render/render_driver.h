@@ -23,7 +23,8 @@ struct StopRule {
     std::optional<double> seconds;
     std::optional<double> noise;  ///< Film::noise() of the finished picture, tested from 8 passes on
     /// Upper end for rules of Film::error() of the finished picture (PictureError::rule_high), tested from 8
-    /// passes on.
+    /// passes on. From the first test on there are control passes (core/film/control_passes.h), where the
+    /// method has them and the film keeps halves.
     std::optional<double> error = {};
 };
 
