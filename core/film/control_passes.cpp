@@ -83,16 +83,21 @@ void ControlPasses::choose(const Film& film, std::uint64_t seed) {
     }
     std::vector<float> represented;
     for (const double of_pixel : importance) represented.push_back(float(share_of_one / of_pixel));
-    set_pixels(std::move(indices), std::move(represented));
+    set_pixels(indices, std::move(represented));
 }
 
-void ControlPasses::set_pixels(std::vector<std::uint32_t> indices, std::vector<float> represented) {
+std::uint32_t ControlPasses::index_of(std::size_t i) const {
+    const Vec2i at = columns_.at(int(i), 0);
+    return std::uint32_t(at.y) * std::uint32_t(width_) + std::uint32_t(at.x);
+}
+
+void ControlPasses::set_pixels(std::span<const std::uint32_t> indices, std::vector<float> represented) {
     std::vector<Vec2i> pixels;
     for (const std::uint32_t index : indices)
         pixels.emplace_back(int(index % std::uint32_t(width_)), int(index / std::uint32_t(width_)));
     const double samples = share * double(width_) * double(height_);
     columns_ = {std::move(pixels), std::max(1, int(std::lround(samples / double(count_))))};
-    indices_ = std::move(indices), represented_ = std::move(represented);
+    represented_ = std::move(represented);
 }
 
 void ControlPasses::add_pass(const PassImage& light, std::size_t part) {
@@ -117,7 +122,7 @@ ControlPixels ControlPasses::pixels(const Film& film) const {
     for (std::size_t part = 0; !empty() && part < film.parts(); ++part)
         if (has_halves(part)) controls.resize(count_);
     if (controls.empty()) return {};
-    for (std::size_t i = 0; i < count_; ++i) controls[i].pixel = indices_[i];
+    for (std::size_t i = 0; i < count_; ++i) controls[i].pixel = index_of(i);
     for (std::size_t part = 0; part < film.parts(); ++part)
         for (const int half : {0, 1}) {
             const bool own = has_halves(part);
@@ -133,10 +138,12 @@ ControlPixels ControlPasses::pixels(const Film& film) const {
 
 std::vector<std::byte> ControlPasses::serialize() const {
     const std::vector<std::byte> sums = sums_.serialize();
-    const std::size_t of_indices = indices_.size() * sizeof(std::uint32_t),
+    std::vector<std::uint32_t> indices;
+    for (std::size_t i = 0; i < count_; ++i) indices.push_back(index_of(i));
+    const std::size_t of_indices = indices.size() * sizeof(std::uint32_t),
                       of_weights = represented_.size() * sizeof(float);
     std::vector<std::byte> bytes(of_indices + of_weights + sums.size());
-    std::memcpy(bytes.data(), indices_.data(), of_indices);
+    std::memcpy(bytes.data(), indices.data(), of_indices);
     std::memcpy(bytes.data() + of_indices, represented_.data(), of_weights);
     std::memcpy(bytes.data() + of_indices + of_weights, sums.data(), sums.size());
     return bytes;
@@ -156,7 +163,7 @@ void ControlPasses::deserialize(std::span<const std::byte> bytes) {
                    represented, [&](float a) { return a > 0.0f && a <= 4.0f * float(pixels); });
     if (!indices_fit || !numbers_fit) throw InputError("the control passes are damaged");
     sums_.deserialize(bytes.subspan(of_indices + of_weights));
-    set_pixels(std::move(indices), std::move(represented));
+    set_pixels(indices, std::move(represented));
 }
 
 }  // namespace mote::core

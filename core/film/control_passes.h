@@ -48,17 +48,17 @@ class ControlPasses {
     ControlPixels pixels(const Film& film) const;
     std::uint64_t non_finite() const { return sums_.non_finite(); }  ///< as of Film
 
-    std::vector<std::byte> serialize() const;  ///< for checkpoints
+    std::vector<std::byte> serialize() const;  ///< for checkpoints; not where there are none
     /// Throws InputError for bytes of another film's, or damaged ones.
     void deserialize(std::span<const std::byte> bytes);
 
   private:
     bool has_halves(std::size_t part) const;
-    void set_pixels(std::vector<std::uint32_t> indices, std::vector<float> represented);
-    int width_ = 0, height_ = 0;          ///< of the film
-    std::size_t count_ = 0;               ///< of pixels, once they are chosen
-    std::vector<std::uint32_t> indices_;  ///< of each pixel in the film
-    std::vector<float> represented_;      ///< of each pixel of the film: ControlPixels::represented
+    void set_pixels(std::span<const std::uint32_t> indices, std::vector<float> represented);
+    std::uint32_t index_of(std::size_t i) const;  ///< of a control pixel in the film
+    int width_ = 0, height_ = 0;                  ///< of the film
+    std::size_t count_ = 0;                       ///< of pixels, once they are chosen
+    std::vector<float> represented_;              ///< of each pixel of the film: ControlPixels::represented
     PixelColumns columns_;
     Film sums_;  ///< one row; one layer a part
 };

@@ -106,10 +106,9 @@ bool PassRunner::fill(const PassContext& context, PassImage& image) {
 }
 
 void PassRunner::choose_controls() {
-    bool any = false;
+    if (!controls_.can_choose()) return;
     for (std::size_t part = 0; part < film_.parts(); ++part)
-        any = any || estimator_->has_control_passes(part);
-    if (any && controls_.can_choose()) controls_.choose(film_, seed_);
+        if (estimator_->has_control_passes(part)) return controls_.choose(film_, seed_);
 }
 
 bool PassRunner::fill_control(PassContext context) {

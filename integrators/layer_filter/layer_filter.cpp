@@ -196,19 +196,19 @@ bool LayerFilter::joins_layers(const Film& film) const {
 
 std::vector<LayerFilter::Kind> LayerFilter::kinds(const Film& film) const {
     std::vector<Kind> result;
-    const auto add = [&](screenspace::LayerKind kind, bool many_times) {
-        Kind found{kind, {}};
-        for (const Choice& choice : layers_)
-            if (choice.kind == kind && has_passes(film, choice.layer) &&
-                (kind == screenspace::LayerKind::surface ||
-                 (film.layers()[choice.layer].transport == Transport::multiple_scattering) == many_times))
-                found.layers.push_back(choice.layer);
-        if (!found.layers.empty()) result.push_back(std::move(found));
-    };
-    add(screenspace::LayerKind::surface, false);
     // Light that is scattered once shows shafts and has little noise; the noise of the rest would hide them:
     // as one they have 1.4 times the squared error (fog, 4 passes).
-    add(screenspace::LayerKind::volume, false), add(screenspace::LayerKind::volume, true);
+    const auto group_of = [&](const Choice& choice) {
+        if (choice.kind == screenspace::LayerKind::surface) return 0;
+        return film.layers()[choice.layer].transport == Transport::multiple_scattering ? 2 : 1;
+    };
+    for (const int group : {0, 1, 2}) {
+        Kind found{group == 0 ? screenspace::LayerKind::surface : screenspace::LayerKind::volume, {}};
+        for (const Choice& choice : layers_)
+            if (group_of(choice) == group && has_passes(film, choice.layer))
+                found.layers.push_back(choice.layer);
+        if (!found.layers.empty()) result.push_back(std::move(found));
+    }
     return result;
 }
 

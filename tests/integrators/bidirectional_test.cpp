@@ -31,11 +31,6 @@ void check_equal(const std::string& xml, const std::string& reference, const std
 
 std::string with(std::string xml, const std::string& more) { return xml.insert(xml.find("<sensor"), more); }
 
-std::string with_sensor(std::string xml, const std::string& sensor) {
-    const auto from = xml.find("<sensor"), to = xml.find("</sensor>");
-    return xml.replace(from, to + 9 - from, sensor);
-}
-
 const std::string balls = R"(
     <shape type="sphere"><point name="center" x="-0.35" y="-0.4" z="0.2"/><float name="radius" value="0.35"/>
         <bsdf type="roughdielectric"><float name="alpha" value="0.4"/></bsdf></shape>

@@ -315,9 +315,7 @@ TEST_CASE("the weights of every path add up to 1 for every camera", "[bdpt][weig
              <float name="focus_distance" value="3"/><transform name="to_world">)" +
              look,
          R"(<sensor type="orthographic"><transform name="to_world"><scale x="0.9" y="0.9"/>)" + look}) {
-        std::string xml = box(grey, "");
-        const auto from = xml.find("<sensor"), to = xml.find("</sensor>");
-        const auto scene = scene_from(xml.replace(from, to + 9 - from, sensor));
+        const auto scene = scene_from(with_sensor(box(grey, ""), sensor));
         const Comparison c = compare<false>(*scene, Heuristic::power);
         report(c);
         CHECK(c.paths > 600);

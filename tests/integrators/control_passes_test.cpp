@@ -101,11 +101,6 @@ class Controls final : public Integrator {
     std::size_t part_;
 };
 
-std::string with_sensor(std::string xml, const std::string& sensor) {
-    const std::size_t begin = xml.find("<sensor"), end = xml.find("</sensor>");
-    return xml.replace(begin, end + 9 - begin, sensor);
-}
-
 const std::string lens = R"(<sensor type="thinlens"><float name="fov" value="40"/>
     <float name="aperture_radius" value="0.1"/><float name="focus_distance" value="3"/><transform name="to_world">
     <lookat origin="0.4, 0, 3.6" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>)";

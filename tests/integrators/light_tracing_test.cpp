@@ -87,11 +87,6 @@ class LightTracing final : public core::Integrator {
     Error error_;
 };
 
-std::string with_sensor(std::string xml, const std::string& sensor) {
-    const auto from = xml.find("<sensor"), to = xml.find("</sensor>");
-    return xml.replace(from, to + 9 - from, sensor);
-}
-
 /// The three cameras, before the open side of the box. A pane stands between the near plane and the lens.
 std::vector<std::string> sensors() {
     const std::string look = R"(<lookat origin="0.2, 0.1, 3.6" target="0, 0, 0" up="0, 1, 0"/>)";

@@ -44,6 +44,12 @@ inline std::string box(const std::string& wall, const std::string& medium) {
     return xml;
 }
 
+/// The scene with another sensor in place of its own.
+inline std::string with_sensor(std::string xml, const std::string& sensor) {
+    const auto from = xml.find("<sensor"), to = xml.find("</sensor>");
+    return xml.replace(from, to + 9 - from, sensor);
+}
+
 inline const std::string grey =
     R"(<bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="0.6, 0.5, 0.4"/></bsdf></bsdf>)";
 inline const std::string glossy =

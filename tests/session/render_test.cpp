@@ -317,7 +317,9 @@ TEST_CASE("A limit on the error has control passes, which continue as they would
     one_thread.threads = 1;
     CHECK(session::render(scene, one_thread).error->high == whole.error->high);
 
-    settings.stop.passes = 6, settings.checkpoint = folder.file("film.checkpoint");
+    // Before there are any, and when there are: they begin after eight passes.
+    const std::uint32_t before = GENERATE(6u, 11u);
+    settings.stop.passes = before, settings.checkpoint = folder.file("film.checkpoint");
     settings.keep_checkpoint = true;
     session::render(scene, settings);
     settings.stop.passes = 13, settings.resume = true;
@@ -326,7 +328,7 @@ TEST_CASE("A limit on the error has control passes, which continue as they would
     CHECK(resumed.error->high == whole.error->high);
     // A limit that is set later has control passes from there on; one that is taken back has none.
     const bool first = GENERATE(false, true);
-    RenderSettings half = passes(6);
+    RenderSettings half = passes(first ? 11 : 6);
     half.checkpoint = folder.file("half.checkpoint"), half.keep_checkpoint = true;
     if (first) half.stop.error = 1e-9;
     session::render(scene, half);

@@ -47,16 +47,13 @@ struct Coverage {
 };
 
 Coverage coverage(const Filter& filter, std::uint64_t seeds, Fault fault = Fault::none) {
-    const Image mu = truth();
+    const Image mu = truth(), variance = variance_of_noise(mu);
     const RelativeWeights weights = relative_weights(mu);
-    Image variance(pixels);
-    for (std::size_t p = 0; p < pixels; ++p) variance[p] = deviation(p) * deviation(p) * mu[p] * mu[p];
     Coverage result;
     double differences = 0.0, squares = 0.0;
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const Image a = noisy(mu, 2 * seed), b = noisy(mu, 2 * seed + 1), fa = filter(a), fb = filter(b);
-        Image picture(pixels);
-        for (std::size_t p = 0; p < pixels; ++p) picture[p] = 0.5f * (fa[p] + fb[p]);
+        const Image a = noisy(mu, 2 * seed), b = noisy(mu, 2 * seed + 1), fa = filter(a), fb = filter(b),
+                    picture = mean_of(fa, fb);
         const std::array halves{PictureHalf{a, fa, variance}, PictureHalf{b, fb, variance}};
         const SquaredError of_halves = halves_error(halves, picture, weights, width, height).sum();
         const RestEstimate of_controls = control_estimate(controls_of(mu, a, seed, fault), halves, weights);
@@ -126,8 +123,7 @@ TEST_CASE("One control pixel for each pixel, without noise, makes the error exac
     ControlPixels controls{{}, ones};
     for (std::size_t p = 0; p < pixels; ++p) controls.chosen.push_back({p, {mu[p], mu[p]}, {}});
     const std::array halves{PictureHalf{a, fa, none}, PictureHalf{b, fb, none}};
-    Image picture(pixels);
-    for (std::size_t p = 0; p < pixels; ++p) picture[p] = 0.5f * (fa[p] + fb[p]);
+    const Image picture = mean_of(fa, fb);
     const double noise = halves_error(halves, picture, weights, width, height).sum().noise;
     const double error = relative_error(picture, mu, weights).error;
     CHECK(noise + control_estimate(controls, halves, weights).rest ==

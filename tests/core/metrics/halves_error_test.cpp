@@ -36,10 +36,8 @@ bool contains(const PictureError& interval, double error) {
 
 /// `shared`: share of a half's noise that the other has too; a planted fault.
 Coverage coverage(const Filter& filter, std::uint64_t seeds, float shared = 0.0f) {
-    const Image mu = truth();
+    const Image mu = truth(), variance = variance_of_noise(mu);
     const RelativeWeights weights = relative_weights(mu);
-    Image variance(pixels);
-    for (std::size_t p = 0; p < pixels; ++p) variance[p] = deviation(p) * deviation(p) * mu[p] * mu[p];
     Coverage result;
     double differences = 0.0, squares = 0.0;
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
@@ -47,9 +45,7 @@ Coverage coverage(const Filter& filter, std::uint64_t seeds, float shared = 0.0f
         Image b = own;
         for (std::size_t p = 0; p < pixels; ++p)
             b[p] = mu[p] + std::sqrt(1.0f - shared * shared) * (own[p] - mu[p]) + shared * (a[p] - mu[p]);
-        const Image fa = filter(a), fb = filter(b);
-        Image picture(pixels);
-        for (std::size_t p = 0; p < pixels; ++p) picture[p] = 0.5f * (fa[p] + fb[p]);
+        const Image fa = filter(a), fb = filter(b), picture = mean_of(fa, fb);
         const BlockErrors blocks = halves_error({PictureHalf{a, fa, variance}, PictureHalf{b, fb, variance}},
                                                 picture, weights, width, height);
         const PictureError said = blocks.of_picture();

@@ -64,4 +64,17 @@ inline Image clamped(const Image& image) {
     return result;
 }
 
+/// Variance of noisy().
+inline Image variance_of_noise(const Image& image) {
+    Image variance(pixels);
+    for (std::size_t p = 0; p < pixels; ++p) variance[p] = deviation(p) * deviation(p) * image[p] * image[p];
+    return variance;
+}
+
+inline Image mean_of(const Image& a, const Image& b) {
+    Image mean(pixels);
+    for (std::size_t p = 0; p < pixels; ++p) mean[p] = 0.5f * (a[p] + b[p]);
+    return mean;
+}
+
 }  // namespace mote::tests::noisy_images
