@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/film/film_memory.h"
 #include "core/math/random.h"
 #include "core/metrics/neighbourhood.h"
 #include "core/objects/error.h"
@@ -17,18 +18,25 @@ namespace {
 
 constexpr double pixels_for_each = 100.0;  ///< of the film, about
 constexpr double min_count = 256.0, max_count = 4096.0;
+constexpr double min_rows = 4.0;  ///< they show a variance
+constexpr double min_importance = 0.25;
 constexpr std::uint64_t choice_key = 0x636f6e74726f6cull;
 
 std::vector<Layer> layer_of_each_part(std::size_t parts) {
     std::vector<Layer> layers;
     for (std::size_t part = 0; part < parts; ++part) {
         Layer& layer = layers.emplace_back();
-        layer.name = "part" + std::to_string(part), layer.squares = true, layer.part = part;
+        layer.name = "part" + std::to_string(part), layer.part = part;
     }
     return layers;
 }
 
-/// Means over 5 x 5 pixels, relative to the mean over all; 0 where there is nothing.
+int count_of(double pixels) { return int(std::clamp(pixels / pixels_for_each, min_count, max_count)); }
+int rows_of(double pixels) {
+    return int(std::max(min_rows, std::round(ControlPasses::share * pixels / count_of(pixels))));
+}
+
+/// Means over 5 x 5 pixels, relative to the mean over all; 1 where there is nothing.
 std::vector<double> smoothed(const std::vector<double>& values, int width, int height) {
     std::vector<double> result(values.size());
     for (int y = 0; y < height; ++y)
@@ -38,33 +46,55 @@ std::vector<double> smoothed(const std::vector<double>& values, int width, int h
             result[std::size_t(y) * std::size_t(width) + std::size_t(x)] = sum / count;
         }
     const double mean = std::accumulate(result.begin(), result.end(), 0.0) / double(result.size());
-    for (double& value : result) value = mean > 0.0 ? value / mean : 0.0;
+    for (double& value : result) value = mean > 0.0 ? value / mean : 1.0;
     return result;
+}
+
+/// |f_q - f_p|^2, the mean over the 5 x 5 pixels q around p.
+double difference_from_neighbours(const std::vector<Rgb>& f, std::size_t p, int width, int height) {
+    double sum = 0.0, count = 0.0;
+    for_each_near(int(p) % width, int(p) / width, width, height, [&](std::size_t q) {
+        sum += product_of_differences(f[q], f[p], f[q], f[p]), count += 1.0;
+    });
+    return sum / count;
 }
 
 }  // namespace
 
 std::vector<double> importance_for_error(const Film& film) {
+    const int width = film.width(), height = film.height();
     const Film::HalfBeauty a = film.half_beauty(0), b = film.half_beauty(1);
-    const RelativeWeights weights = relative_weights(film.beauty());
-    std::vector<double> left(film.pixels()), noise(film.pixels());
+    const std::vector<Rgb> shown = film.beauty();
+    const RelativeWeights weights = relative_weights(shown);
+    std::vector<double> left(film.pixels()), noise(film.pixels()), edges(film.pixels());
     for (std::size_t p = 0; p < film.pixels(); ++p) {
         const double w = weights.weight[p];
         left[p] = w * product_of_differences(a.shown[p], b.shown[p], a.shown[p], b.shown[p]);
         // The geometric mean of both halves: a rare bright path is in one alone.
         noise[p] = w * std::sqrt(mean_of_channels(a.variance[p]) * mean_of_channels(b.variance[p]));
+        edges[p] = w * difference_from_neighbours(shown, p, width, height);
     }
-    left = smoothed(left, film.width(), film.height()), noise = smoothed(noise, film.width(), film.height());
+    for (std::vector<double>* values : {&left, &noise, &edges}) *values = smoothed(*values, width, height);
     std::vector<double> importance(film.pixels());
-    for (std::size_t p = 0; p < film.pixels(); ++p) importance[p] = 0.25 + 0.375 * left[p] + 0.375 * noise[p];
+    for (std::size_t p = 0; p < film.pixels(); ++p)
+        importance[p] = min_importance + (1.0 - min_importance) * (left[p] + noise[p] + edges[p]) / 3.0;
     return importance;
 }
 
 ControlPasses::ControlPasses(const Film& film)
     : width_(film.width()), height_(film.height()), sums_(1, 1, {}) {
     if (film.kept().split != PassSplit::halves) throw std::invalid_argument("control passes need halves");
-    count_ = std::size_t(std::clamp(double(film.pixels()) / pixels_for_each, min_count, max_count));
-    sums_ = Film(int(count_), 1, layer_of_each_part(film.parts()), false, PassSplit::halves);
+    const double pixels = double(film.pixels());
+    count_ = std::size_t(count_of(pixels));
+    sums_ = Film(count_of(pixels), rows_of(pixels), layer_of_each_part(film.parts()));
+}
+
+double ControlPasses::memory(int width, int height, std::span<const Layer> layers) {
+    const double pixels = double(width) * double(height);
+    std::size_t parts = 1;
+    for (const Layer& layer : layers) parts = std::max(parts, layer.part + 1);
+    const std::vector<Layer> summed = layer_of_each_part(parts);
+    return FilmMemory(count_of(pixels), rows_of(pixels), summed).peak() + pixels * sizeof(float);
 }
 
 void ControlPasses::choose(const Film& film, std::uint64_t seed) {
@@ -95,45 +125,50 @@ void ControlPasses::set_pixels(std::span<const std::uint32_t> indices, std::vect
     std::vector<Vec2i> pixels;
     for (const std::uint32_t index : indices)
         pixels.emplace_back(int(index % std::uint32_t(width_)), int(index / std::uint32_t(width_)));
-    const double samples = share * double(width_) * double(height_);
-    columns_ = {std::move(pixels), std::max(1, int(std::lround(samples / double(count_))))};
+    columns_ = {std::move(pixels), sums_.height()};
     represented_ = std::move(represented);
 }
 
 void ControlPasses::add_pass(const PassImage& light, std::size_t part) {
     if (light.width() != columns_.columns() || light.height() != columns_.rows() || light.layers() != 1)
         throw std::invalid_argument("the control pass does not fit");
-    PassImage means(columns_.columns(), 1, 1);
-    for (std::size_t i = 0; i < count_; ++i) {
-        Vec3d sum(0.0);
-        for (std::size_t row = 0; row < std::size_t(columns_.rows()); ++row)
-            sum += Vec3d(light.layer(0)[row * count_ + i]);
-        means.layer(0)[i] = Rgb(sum / double(columns_.rows()));
-    }
-    sums_.add_pass(means, part);
-}
-
-bool ControlPasses::has_halves(std::size_t part) const {
-    return sums_.half_passes(part, 0) >= 2 && sums_.half_passes(part, 1) >= 2;
+    sums_.add_pass(light, part);
 }
 
 ControlPixels ControlPasses::pixels(const Film& film) const {
     std::vector<ControlPixel> controls;
     for (std::size_t part = 0; !empty() && part < film.parts(); ++part)
-        if (has_halves(part)) controls.resize(count_);
+        if (sums_.pass_count(part) > 0) controls.resize(count_);
     if (controls.empty()) return {};
     for (std::size_t i = 0; i < count_; ++i) controls[i].pixel = index_of(i);
     for (std::size_t part = 0; part < film.parts(); ++part)
-        for (const int half : {0, 1}) {
-            const bool own = has_halves(part);
-            const Film::PartHalf of_part = own ? sums_.part_half(part, half) : film.part_half(part, half);
-            for (std::size_t i = 0; i < count_; ++i) {
-                const std::size_t p = own ? i : controls[i].pixel;
-                controls[i].mean[std::size_t(half)] += of_part.mean[p];
-                controls[i].variance[std::size_t(half)] += of_part.variance[p];
+        if (sums_.pass_count(part) > 0)
+            add_own_samples(controls, part);
+        else
+            for (const std::size_t half : {0u, 1u}) {
+                const Film::PartHalf of_part = film.part_half(part, int(half));
+                for (ControlPixel& c : controls) c.mean[half] += of_part.mean[c.pixel];
             }
-        }
     return {std::move(controls), represented_};
+}
+
+void ControlPasses::add_own_samples(std::vector<ControlPixel>& controls, std::size_t part) const {
+    const std::vector<Rgb> samples = sums_.mean(part);
+    const std::size_t rows = std::size_t(columns_.rows());
+    for (std::size_t i = 0; i < count_; ++i) {
+        // Of rows of even and of odd index.
+        std::array<Vec3d, 2> sum{Vec3d(0.0), Vec3d(0.0)}, squares = sum;
+        for (std::size_t row = 0; row < rows; ++row) {
+            const Vec3d sample(samples[row * count_ + i]);
+            sum[row % 2] += sample, squares[row % 2] += sample * sample;
+        }
+        for (Rgb& of_half : controls[i].mean) of_half += Rgb((sum[0] + sum[1]) / double(rows));
+        for (const std::size_t odd : {0u, 1u}) {
+            const double n = double((rows + 1 - odd) / 2);
+            const Vec3d variance = (squares[odd] - sum[odd] * sum[odd] / n) / (n - 1.0);
+            controls[i].variance[odd] += Rgb(glm::max(variance, Vec3d(0.0)) / double(rows));
+        }
+    }
 }
 
 std::vector<std::byte> ControlPasses::serialize() const {

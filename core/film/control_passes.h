@@ -4,8 +4,8 @@
 // The pixels are chosen by chance when a filter has worked on the first passes: the more often, the larger
 // the error that is expected there. The image of a control pass has one of them a column, and rows for
 // ControlPasses::share samples for each pixel of the picture. Its random numbers are not those of the
-// picture. The means of the rows are the passes of a film of one row, whose halves are those of even and of
-// odd index.
+// picture, and those of one row are independent of another's: rows show the variance of their mean, which
+// passes do not, whose points are a sequence.
 #pragma once
 
 #include <cstddef>
@@ -22,11 +22,8 @@ class ControlPasses {
   public:
     /// Samples of a control pass for each one of a pass of the picture.
     static constexpr double share = 0.3;
-    /// Memory of them, and of the images of control passes, for a film of this size [B].
-    static double memory(int width, int height, std::size_t layers) {
-        const double of_image = share * double(layers + 1) * (sizeof(Rgb) + 1.0);
-        return double(width) * double(height) * (of_image + sizeof(float));
-    }
+    /// Memory of them, and of an image of a control pass, for a film of this size [B].
+    static double memory(int width, int height, std::span<const Layer> layers);
 
     ControlPasses() : sums_(1, 1, {}) {}  ///< none, now and later
     /// For a film that keeps halves: none before choose().
@@ -42,9 +39,9 @@ class ControlPasses {
     std::uint32_t next_pass(std::size_t part) const { return sums_.next_pass(part); }
     /// Adds that pass. `light`: the beauty of the part in one layer, of the columns' size.
     void add_pass(const PassImage& light, std::size_t part);
-    /// The control pixels as they are by now, for Film::error() of the same film; of parts without two
-    /// control passes of each half, as the film's own passes have them. Empty where no part has these.
-    /// Valid until this object changes.
+    /// The control pixels as they are by now, for Film::error() of the same film; of parts without control
+    /// passes, as the film's own passes have them. Empty where no part has any. Valid until this object
+    /// changes.
     ControlPixels pixels(const Film& film) const;
     std::uint64_t non_finite() const { return sums_.non_finite(); }  ///< as of Film
 
@@ -53,18 +50,19 @@ class ControlPasses {
     void deserialize(std::span<const std::byte> bytes);
 
   private:
-    bool has_halves(std::size_t part) const;
+    void add_own_samples(std::vector<ControlPixel>& controls, std::size_t part) const;
     void set_pixels(std::span<const std::uint32_t> indices, std::vector<float> represented);
     std::uint32_t index_of(std::size_t i) const;  ///< of a control pixel in the film
     int width_ = 0, height_ = 0;                  ///< of the film
     std::size_t count_ = 0;                       ///< of pixels, once they are chosen
     std::vector<float> represented_;              ///< of each pixel of the film: ControlPixels::represented
     PixelColumns columns_;
-    Film sums_;  ///< one row; one layer a part
+    Film sums_;  ///< of the control passes; one layer a part
 };
 
 /// How much each pixel of a film is likely to add to what is not known of its error, relative to the mean
-/// over pixels; nowhere below a quarter. The film keeps halves.
+/// over pixels; nowhere below a quarter: where noise is left or was removed, and at edges, which a filter
+/// blurs. The film keeps halves.
 std::vector<double> importance_for_error(const Film& film);
 
 }  // namespace mote::core

@@ -24,28 +24,33 @@ LeftNoise left_noise(std::span<const float> represented, const std::array<Pictur
 
 }  // namespace
 
-RestEstimate control_estimate(const ControlPixels& controls, const std::array<PictureHalf, 2>& halves,
-                              const RelativeWeights& weights) {
+ControlEstimate control_estimate(const ControlPixels& controls, const std::array<PictureHalf, 2>& halves,
+                                 const RelativeWeights& weights) {
     if (controls.chosen.empty()) return {};
     const double m = double(controls.chosen.size());
-    double rest = 0.0, squares = 0.0, variance = 0.0;
+    ControlEstimate result;
+    result.constant = 0.0;
+    double squares = 0.0;
     for (const ControlPixel& c : controls.chosen) {
         const Rgb &fa = halves[0].shown[c.pixel], &fb = halves[1].shown[c.pixel];
         const double weight = double(controls.represented[c.pixel]) * weights.weight[c.pixel];
-        const double term = weight * product_of_differences(c.mean[0], fa, c.mean[1], fb);
-        rest += term, squares += term * term;
-        const double va = mean_of_channels(c.variance[0]), vb = mean_of_channels(c.variance[1]);
-        variance += weight * weight * (va * vb + 0.5 * product_of_differences(fa, fb, fa, fb) * (va + vb));
+        const double v1 = mean_of_channels(c.variance[0]), v2 = mean_of_channels(c.variance[1]),
+                     v = 0.5 * (v1 + v2);
+        const double term = weight * (product_of_differences(c.mean[0], fa, c.mean[1], fb) - v);
+        result.rest += term, squares += term * term;
+        result.constant += weight * weight * (2.0 * v1 * v2 + product_of_differences(fa, fb, fa, fb) * v);
+        result.linear += 4.0 * weight * v / m;
     }
     const LeftNoise y = left_noise(controls.represented, halves, weights);
-    variance += 0.25 * y.squares;
-    if (y.sum > 0.0) variance += rest * rest * std::max(0.0, y.squares / (y.sum * y.sum) - 1.0 / m);
-    const double spread = m > 1.0 ? (m * squares - rest * rest) / (m - 1.0) : 0.0;
-    return {rest, std::max(variance, spread)};
+    result.constant += 0.25 * y.squares;
+    if (y.sum > 0.0) result.square = std::max(0.0, y.squares / (y.sum * y.sum) - 1.0 / m);
+    if (m > 1.0) result.spread = (m * squares - result.rest * result.rest) / (m - 1.0);
+    return result;
 }
 
-SquaredError with_controls(const SquaredError& of_halves, const RestEstimate& of_controls) {
-    const double a = of_halves.variance, b = of_controls.variance;
+SquaredError with_controls(const SquaredError& of_halves, const ControlEstimate& of_controls) {
+    const double r = std::max(0.0, 0.5 * (of_halves.rest + of_controls.rest));
+    const double a = of_halves.variance, b = of_controls.variance(r);
     if (!std::isfinite(b) || !(a + b > 0.0)) return of_halves;
     SquaredError result = of_halves;
     result.rest = (of_halves.rest * b + of_controls.rest * a) / (a + b);

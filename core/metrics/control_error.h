@@ -2,22 +2,29 @@
 //
 // Eq. (2) of halves_error.h holds the halves of a picture against what a filter makes of them. Its variance,
 // Eq. (3), is that of the raw halves' noise, many times that of the filtered picture. At some pixels, chosen
-// by chance, samples of their own have the means a', b' of two halves, with less noise, and
+// by chance, samples of their own have a mean c of variance v, which is estimated without bias. The sum
 //
-//   B = sum_i A_i w <a' - f_a, b' - f_b>,                                                                (1)
+//   B = sum_i A_i w (<a' - f_a, b' - f_b> - v),   a' = b' = c,                                          (1)
 //
-// 1 / A_i being how often pixel i is chosen on average, has the mean <e_a, e_b> as well: the noise of a' and
-// b' is independent of each other and of the passes. It has the variance of this noise and of the choice of
-// the m pixels,
+// 1 / A_i being how often pixel i is chosen on average, has the mean <e_a, e_b> as well: the noise of c is
+// independent of the passes, and |c|^2 - v has the mean |mu|^2. That is the product of all pairs of
+// samples, of half the variance that halves of them would have; a rare bright sample cancels. Parts of the
+// light without samples of their own are in a' and b' as the halves of the passes have them. For a
+// rest R it has the variance of this noise and of the choice of the m pixels,
 //
-//   s'^2 = sum_i A_i^2 w^2 (v_a' v_b' + |f_a - f_b|^2 / 2 (v_a' + v_b'))
-//          + Y / 4 + B^2 (Y / (sum y)^2 - 1 / m),   y = w |f_a - f_b|^2,   Y = sum A y^2,                (2)
+//   s'^2 = sum_i A_i^2 w^2 (2 v_1 v_2 + v |f_a - f_b|^2) + 4 R / m sum_i A_i w v
+//          + Y / 4 + R^2 (Y / (sum y)^2 - 1 / m),   y = w |f_a - f_b|^2,   Y = sum A y^2,                (2)
 //
-// y being known everywhere, and errors, with the filter's bias, being where its halves differ. The spread of
-// the terms of Eq. (1) shows more where the others are among the chosen pixels: the larger of both variances
-// counts. B and Eq. (2) of halves_error.h are combined by their variances.
+// v_1 and v_2 being v by either half of the samples: v^2 would be too large on average. |e_a + e_b|^2, which
+// v is multiplied with, is |f_a - f_b|^2 + 4 <e_a, e_b>, the latter being where pixels are chosen often; and
+// y is known everywhere, and errors, with the filter's bias, are where the filter's halves differ. The spread
+// of the terms of Eq. (1) shows more where they are not: the larger of both variances counts.
+//
+// B and Eq. (2) of halves_error.h are combined by their variances, R being the mean of both: B itself, where
+// it is low by chance, would have a variance that is low as well, and count for too much.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <span>
@@ -27,10 +34,12 @@
 
 namespace mote::core {
 
-/// A pixel with samples of its own, in two independent halves.
+/// A pixel with samples of its own.
 struct ControlPixel {
-    std::size_t pixel = 0;                        ///< index in the picture, row by row
-    std::array<Rgb, 2> mean = {}, variance = {};  ///< of the halves; the variance is that of the mean
+    std::size_t pixel = 0;         ///< index in the picture, row by row
+    std::array<Rgb, 2> mean = {};  ///< a' and b' of Eq. (1)
+    /// Of the noise that both share: v_1 and v_2, independent and without bias. Their mean is v.
+    std::array<Rgb, 2> variance = {};
 };
 
 /// All that is known of control pixels; none: empty.
@@ -39,18 +48,21 @@ struct ControlPixels {
     std::span<const float> represented;  ///< A of every pixel of the picture
 };
 
-/// Estimate of sum w <e_a, e_b> over the picture.
-struct RestEstimate {
-    double rest = 0.0;                                          ///< its value
-    double variance = std::numeric_limits<double>::infinity();  ///< of that value
+/// Estimate of sum w <e_a, e_b> over the picture, by control pixels.
+struct ControlEstimate {
+    double rest = 0.0;  ///< B
+    /// Of Eq. (2), and the factors of R and of R^2 there.
+    double constant = std::numeric_limits<double>::infinity(), linear = 0.0, square = 0.0;
+    double spread = 0.0;  ///< variance of B as the terms of Eq. (1) show it
+    /// Variance of B where the rest is `r`.
+    double variance(double r) const { return std::max(constant + (linear + square * r) * r, spread); }
 };
 
-/// Eq. (1) and (2). Nothing is known without control pixels.
-RestEstimate control_estimate(const ControlPixels& controls, const std::array<PictureHalf, 2>& halves,
-                              const RelativeWeights& weights);
+/// Eq. (1) and (2). The variance is infinite without control pixels.
+ControlEstimate control_estimate(const ControlPixels& controls, const std::array<PictureHalf, 2>& halves,
+                                 const RelativeWeights& weights);
 
-/// The error of a picture by both: its rest and variance are those of the estimates combined by their
-/// variances.
-SquaredError with_controls(const SquaredError& of_halves, const RestEstimate& of_controls);
+/// The error of a picture by both.
+SquaredError with_controls(const SquaredError& of_halves, const ControlEstimate& of_controls);
 
 }  // namespace mote::core

@@ -366,7 +366,7 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
                             request.split);
     const bool has_controls = stop.error && request.split == PassSplit::halves;
     const double of_controls =
-        has_controls ? ControlPasses::memory(settings.width, settings.height, layers.size()) : 0.0;
+        has_controls ? ControlPasses::memory(settings.width, settings.height, layers) : 0.0;
     // A checkpoint is read beside it.
     needed.require(request.memory, of_controls + (request.resume ? needed.sums() : 0.0));
     RenderResult result = with_memory_for(needed.purpose() + memory_text(needed.peak()), [&] {

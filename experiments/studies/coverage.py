@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """How often the stated interval of 95 % contains the true error of an image (docs/testing.md, "Error with the bias of filters").
 
-Usage: coverage.py [--mote build/release/bin/mote] [--scenes A,B] [--methods "A;B"] [--seeds N] [--passes N] [--error E]
+Usage: coverage.py [--mote build/release/bin/mote] [--scenes A,B] [--methods "A;B"] [--seeds N] [--first-seed N] [--passes N] [--error E]
                    [--references FOLDER] [--reference-passes N] [--size WxH] [--threads N] [--csv FILE] [--cost] [--quick]
 Renders each scene (at 96 x 64 pixels without --size) with many seeds and compares each image, by `mote compare`, with a long reference of
 another seed, whose noise is subtracted (with two references the weights are those of neighbours, another measure where small
@@ -91,7 +91,7 @@ def study(args, scene, name, reference, folder):
     """Counts of seeds; None where the error is not known."""
     rule = ["--error", str(args.error)] if args.error else ["--passes", str(args.passes)]
     errors, lows, highs, counts = [], [], [], {"in": 0, "above": 0, "below": 0, "optimist": 0, "in time": 0}
-    for seed in range(1, args.seeds + 1):
+    for seed in range(args.first_seed, args.first_seed + args.seeds):
         file = folder / "image.exr"
         said = render(args, scene, METHODS[name], rule, seed, file)
         interval = said["error"]
@@ -148,6 +148,7 @@ def main():
     parser.add_argument("--scenes", default=",".join(SCENES))
     parser.add_argument("--methods", default=";".join(METHODS), help="names, separated by ';'")
     parser.add_argument("--seeds", type=int, default=100)
+    parser.add_argument("--first-seed", type=int, default=1, help="more seeds of a study: their counts add up")
     parser.add_argument("--passes", type=int, default=32)
     parser.add_argument("--error", type=float)
     parser.add_argument("--references", type=Path, help="folder of references, made where they are missing")

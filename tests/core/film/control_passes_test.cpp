@@ -2,6 +2,7 @@
 #include "core/film/control_passes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/objects/error.h"
 #include "tests/support/catch.h"
@@ -119,21 +120,55 @@ TEST_CASE("Control pixels are chosen once, by film and seed", "[film][controls]"
     CHECK(ControlPasses().pixels(film).chosen.empty());
 }
 
-TEST_CASE("Control pixels have the means of rows and passes, half by half", "[film][controls]") {
+TEST_CASE("Control pixels have the mean of rows and passes, and its variance by rows", "[film][controls]") {
     const Film film = filtered_film(96, 64);
-    CHECK(controls_after(film, 3).pixels(film).chosen.empty());  // a half of one pass
+    CHECK(controls_after(film, 0).pixels(film).chosen.empty());
     const ControlPasses controls = controls_after(film, 7);
     CHECK(controls.next_pass(0) == 7);
     const std::vector<ControlPixel> pixels = controls.pixels(film).chosen;
-    const float middle = 0.5f * float(controls.columns().rows() - 1);
+    REQUIRE(controls.columns().rows() == 7);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        CHECK(pixels[i].mean[0] == Rgb(3.0f, float(i), middle));         // of the passes 0, 2, 4 and 6
-        CHECK(pixels[i].mean[1] == Rgb(3.0f, float(i), middle + 1.0f));  // of 1, 3 and 5
-        CHECK(pixels[i].variance[0].x == Approx(20.0 / (4.0 * 3.0)));
-        CHECK(pixels[i].variance[1].x == Approx(8.0 / (3.0 * 2.0)));
+        for (const Rgb& mean : pixels[i].mean) {
+            CHECK(mean.x == 3.0f);                     // of the passes 0 to 6
+            CHECK(mean.y == float(i));                 // the column
+            CHECK(mean.z == Approx(3.0 + 3.0 / 7.0));  // rows, and three odd passes of seven
+        }
+        // Rows 0, 2, 4 and 6 have the variance 20 / 3, rows 1, 3 and 5 have 4.
+        CHECK(pixels[i].variance[0].z == Approx(20.0 / 3.0 / 7.0));
+        CHECK(pixels[i].variance[1].z == Approx(4.0 / 7.0));
+        for (const Rgb& variance : pixels[i].variance) CHECK(Vec2(variance.x, variance.y) == Vec2(0.0f));
     }
     ControlPasses other = controls_after(film, 0);
     CHECK_THROWS_AS(other.add_pass(PassImage(2, 2, 1), 0), std::invalid_argument);
+}
+
+TEST_CASE("Both variances of control pixels are right on average", "[film][controls][statistics]") {
+    const Film film = filtered_film(96, 64);
+    ControlPasses controls(film);
+    controls.choose(film, 1);
+    const int width = controls.columns().columns(), rows = controls.columns().rows();
+    Rng rng(7);
+    constexpr double passes = 4.0;
+    for (int pass = 0; pass < int(passes); ++pass) {
+        PassImage image(width, rows, 1);
+        for (Rgb& value : image.layer(0)) value = Rgb(rng.next_float());
+        controls.add_pass(image, 0);
+    }
+    const double variance = 1.0 / 12.0 / passes / double(rows);
+    const ControlPixels known = controls.pixels(film);
+    const double n = double(known.chosen.size());
+    std::array<double, 2> sum{}, squares{};
+    double around_mean = 0.0;
+    for (const ControlPixel& c : known.chosen) {
+        for (const std::size_t odd : {0u, 1u})
+            sum[odd] += double(c.variance[odd].x), squares[odd] += sqr(double(c.variance[odd].x));
+        around_mean += sqr(double(c.mean[0].x) - 0.5);
+    }
+    for (const std::size_t odd : {0u, 1u}) {
+        const double mean = sum[odd] / n, error = std::sqrt((squares[odd] / n - mean * mean) / n);
+        CHECK(std::fabs(mean - variance) < 4.0 * error);
+    }
+    CHECK(std::fabs(around_mean / n - variance) < 4.0 * variance * std::sqrt(2.0 / n));
 }
 
 TEST_CASE("Parts without control passes have the light of the film's own", "[film][controls]") {
@@ -142,14 +177,13 @@ TEST_CASE("Parts without control passes have the light of the film's own", "[fil
     REQUIRE_FALSE(pixels.empty());
     const Film one_part = filtered_film(96, 64);
     const std::vector<ControlPixel> alone = controls_after(one_part, 8).pixels(one_part).chosen;
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        for (const int half : {0, 1}) {
-            const Film::PartHalf own = film.part_half(0, half);
-            const ControlPixel& of_part = alone[i];
-            const std::size_t p = pixels[i].pixel, h = std::size_t(half);
-            CHECK(pixels[i].mean[h] == own.mean[p] + of_part.mean[h]);
-            CHECK(pixels[i].variance[h] == own.variance[p] + of_part.variance[h]);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        CHECK(pixels[i].variance == alone[i].variance);
+        for (const std::size_t half : {0u, 1u}) {
+            const Film::PartHalf own = film.part_half(0, int(half));
+            CHECK(pixels[i].mean[half].x == Approx(own.mean[pixels[i].pixel].x + alone[i].mean[half].x));
         }
+    }
 }
 
 TEST_CASE("Control passes are read as they were written, and count what is not finite", "[film][controls]") {

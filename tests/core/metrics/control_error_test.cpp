@@ -17,25 +17,31 @@ namespace {
 constexpr int cell = 8;  ///< pixels along an edge
 
 /// Planted faults of control pixels.
-enum class Fault { none, shared_noise, of_the_passes, few_pixels };
+enum class Fault { none, noise_is_left_in, of_the_passes, few_pixels };
 
-/// One pixel of each cell, with a sixteenth of a half's variance.
+/// Variance of the mean of four samples by two of them.
+Rgb variance_by(const Rgb& one, const Rgb& other) { return (one - other) * (one - other) / 8.0f; }
+
+/// One pixel of each cell. Its four samples have a quarter of a half's variance each.
 ControlPixels controls_of(const Image& mu, const Image& a, std::uint64_t seed, Fault fault) {
-    constexpr float quieter = 0.25f;
-    const Image first = noisy(mu, hash_keys(seed, 1)), second = noisy(mu, hash_keys(seed, 2));
+    constexpr float quieter = 0.5f;
+    std::array<Image, 4> samples;
+    for (std::size_t i = 0; i < 4; ++i) samples[i] = noisy(mu, hash_keys(seed, i + 1));
     static const std::vector<float> cells(pixels, float(cell * cell)), halved(pixels, 0.5f * cells[0]);
     ControlPixels controls{{}, fault == Fault::few_pixels ? halved : cells};
-    Rng rng(hash_keys(seed, 3));
+    Rng rng(hash_keys(seed, 5));
     for (int y = 0; y < height; y += cell)
         for (int x = 0; x < width; x += cell) {
             const Vec2 u = rng.next_vec2();
             const auto p = std::size_t((y + int(u.y * float(cell))) * width + x + int(u.x * float(cell)));
             ControlPixel& c = controls.chosen.emplace_back();
             c.pixel = p;
-            c.mean[0] = mu[p] + quieter * (first[p] - mu[p]);
-            c.mean[1] = fault == Fault::shared_noise ? c.mean[0] : mu[p] + quieter * (second[p] - mu[p]);
+            std::array<Rgb, 4> own;
+            for (std::size_t i = 0; i < 4; ++i) own[i] = mu[p] + quieter * (samples[i][p] - mu[p]);
+            c.mean[0] = c.mean[1] = 0.25f * (own[0] + own[1] + own[2] + own[3]);
+            c.variance = {variance_by(own[0], own[2]), variance_by(own[1], own[3])};
+            if (fault == Fault::noise_is_left_in) c.variance = {};
             if (fault == Fault::of_the_passes) c.mean[1] = a[p];
-            c.variance[0] = c.variance[1] = sqr(quieter * deviation(p)) * mu[p] * mu[p];
         }
     return controls;
 }
@@ -56,7 +62,8 @@ Coverage coverage(const Filter& filter, std::uint64_t seeds, Fault fault = Fault
                     picture = mean_of(fa, fb);
         const std::array halves{PictureHalf{a, fa, variance}, PictureHalf{b, fb, variance}};
         const SquaredError of_halves = halves_error(halves, picture, weights, width, height).sum();
-        const RestEstimate of_controls = control_estimate(controls_of(mu, a, seed, fault), halves, weights);
+        const ControlEstimate of_controls =
+            control_estimate(controls_of(mu, a, seed, fault), halves, weights);
         const SquaredError both = with_controls(of_halves, of_controls);
         CHECK(both.variance <= of_halves.variance);
         const PictureError said = error_interval(both);
@@ -91,9 +98,11 @@ TEST_CASE("The interval with control pixels contains the error in 95 of 100 seed
     CHECK(coverage(wide, 100).shorter < 0.8);
 }
 
-TEST_CASE("Control pixels that share their noise, or represent fewer pixels, are found out",
-          "[metrics][controls][planted]") {
-    CHECK(std::fabs(coverage(narrow, 100, Fault::shared_noise).surprise) > 4.0);
+TEST_CASE(
+    "Noise of control pixels that counts as error, or that is the passes', and pixels that count for fewer "
+    "are found out",
+    "[metrics][controls][planted]") {
+    CHECK(std::fabs(coverage(narrow, 100, Fault::noise_is_left_in).surprise) > 4.0);
     CHECK(std::fabs(coverage(narrow, 100, Fault::of_the_passes).surprise) > 4.0);
     CHECK(std::fabs(coverage(wide, 100, Fault::few_pixels).surprise) > 4.0);
 }
@@ -101,8 +110,8 @@ TEST_CASE("Control pixels that share their noise, or represent fewer pixels, are
 TEST_CASE("Without control pixels the error is that of the halves", "[metrics][controls]") {
     const Image mu = truth(), a = noisy(mu, 1), b = noisy(mu, 2);
     const RelativeWeights weights = relative_weights(mu);
-    const RestEstimate none = control_estimate({}, {PictureHalf{a, a, a}, PictureHalf{b, b, b}}, weights);
-    CHECK(std::isinf(none.variance));
+    const ControlEstimate none = control_estimate({}, {PictureHalf{a, a, a}, PictureHalf{b, b, b}}, weights);
+    CHECK(std::isinf(none.variance(1.0)));
     const SquaredError before{1.0, 2.0, 3.0, 4.0}, after = with_controls(before, none);
     CHECK(after.rest == before.rest);
     CHECK(after.variance == before.variance);
@@ -113,6 +122,17 @@ TEST_CASE("Without control pixels the error is that of the halves", "[metrics][c
     CHECK(with_controls({1.0, 2.0, 0.0, 4.0}, {4.0, 0.0}).rest == 2.0);
     CHECK(with_controls(before, {4.0, 3.0}).noise == before.noise);
     CHECK(with_controls(before, {4.0, 3.0}).norm == before.norm);
+}
+
+TEST_CASE("The variance of control pixels is that of the mean of both rests, or what their terms show",
+          "[metrics][controls]") {
+    const ControlEstimate of_controls{2.0, 3.0, 4.0, 5.0, 6.0};
+    CHECK(of_controls.variance(0.0) == 6.0);
+    CHECK(of_controls.variance(2.0) == 3.0 + 2.0 * 4.0 + 4.0 * 5.0);
+    const SquaredError both = with_controls({0.0, 4.0, 69.0, 1.0}, of_controls);  // of 3: 3 + 12 + 45 = 60
+    CHECK(both.rest == Approx((4.0 * 60.0 + 2.0 * 69.0) / 129.0));
+    CHECK(both.variance == Approx(60.0 * 69.0 / 129.0));
+    CHECK(with_controls({0.0, -4.0, 6.0, 1.0}, of_controls).rest == Approx(-1.0));  // of none: 6
 }
 
 TEST_CASE("One control pixel for each pixel, without noise, makes the error exact", "[metrics][controls]") {
