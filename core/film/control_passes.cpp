@@ -156,7 +156,7 @@ void ControlPasses::add_own_samples(std::vector<ControlPixel>& controls, std::si
     const std::vector<Rgb> samples = sums_.mean(part);
     const std::size_t rows = std::size_t(columns_.rows());
     for (std::size_t i = 0; i < count_; ++i) {
-        // Of rows of even and of odd index.
+        // Rows of even and of odd index are two estimates.
         std::array<Vec3d, 2> sum{Vec3d(0.0), Vec3d(0.0)}, squares = sum;
         for (std::size_t row = 0; row < rows; ++row) {
             const Vec3d sample(samples[row * count_ + i]);

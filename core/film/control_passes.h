@@ -21,7 +21,7 @@ namespace mote::core {
 class ControlPasses {
   public:
     /// Samples of a control pass for each one of a pass of the picture.
-    static constexpr double share = 0.3;
+    static constexpr double share = 0.5;
     /// Memory of them, and of an image of a control pass, for a film of this size [B].
     static double memory(int width, int height, std::span<const Layer> layers);
 

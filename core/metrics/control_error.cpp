@@ -48,13 +48,28 @@ ControlEstimate control_estimate(const ControlPixels& controls, const std::array
     return result;
 }
 
+double ControlEstimate::variance(double r) const {
+    const auto model = [&](double of) { return constant + (linear + square * of) * of; };
+    const double here = model(std::max(0.0, rest));
+    if (!(here > 0.0)) return std::max(model(r), spread);
+    return model(r) * std::max(1.0, spread / here);
+}
+
 SquaredError with_controls(const SquaredError& of_halves, const ControlEstimate& of_controls) {
     const double r = std::max(0.0, 0.5 * (of_halves.rest + of_controls.rest));
     const double a = of_halves.variance, b = of_controls.variance(r);
     if (!std::isfinite(b) || !(a + b > 0.0)) return of_halves;
     SquaredError result = of_halves;
-    result.rest = (of_halves.rest * b + of_controls.rest * a) / (a + b);
-    result.variance = a * b / (a + b);
+    const double of_first = b / (a + b);
+    result.rest = of_first * of_halves.rest + (1.0 - of_first) * of_controls.rest;
+    const auto variance = [&](double at) {
+        return sqr(of_first) * a + sqr(1.0 - of_first) * of_controls.variance(at);
+    };
+    result.variance = variance(r);
+    double end = r;
+    for (int step = 0; step < 4; ++step)
+        end = std::max(0.0, result.rest) + normal_quantile * std::sqrt(variance(end));
+    result.more_above = std::max(0.0, variance(end) - result.variance);
     return result;
 }
 

@@ -18,10 +18,11 @@
 // v_1 and v_2 being v by either half of the samples: v^2 would be too large on average. |e_a + e_b|^2, which
 // v is multiplied with, is |f_a - f_b|^2 + 4 <e_a, e_b>, the latter being where pixels are chosen often; and
 // y is known everywhere, and errors, with the filter's bias, are where the filter's halves differ. The spread
-// of the terms of Eq. (1) shows more where they are not: the larger of both variances counts.
+// of the terms of Eq. (1) shows more where they are not: Eq. (2) is then larger by as much for all R.
 //
-// B and Eq. (2) of halves_error.h are combined by their variances, R being the mean of both: B itself, where
-// it is low by chance, would have a variance that is low as well, and count for too much.
+// B and Eq. (2) of halves_error.h are combined by their variances. Estimates that are low by chance come with
+// variances that are low, by the terms with R: R is the mean of both there, and the interval ends above at
+// that rest R from which the estimate is 1.96 times s(R) away (a score interval, Wilson 1927).
 #pragma once
 
 #include <algorithm>
@@ -54,8 +55,8 @@ struct ControlEstimate {
     /// Of Eq. (2), and the factors of R and of R^2 there.
     double constant = std::numeric_limits<double>::infinity(), linear = 0.0, square = 0.0;
     double spread = 0.0;  ///< variance of B as the terms of Eq. (1) show it
-    /// Variance of B where the rest is `r`.
-    double variance(double r) const { return std::max(constant + (linear + square * r) * r, spread); }
+    /// Variance of B where the rest is `r`, not below 0.
+    double variance(double r) const;
 };
 
 /// Eq. (1) and (2). The variance is infinite without control pixels.

@@ -8,7 +8,7 @@ namespace mote::core {
 
 namespace {
 
-constexpr double quantile = 1.96;  ///< of the normal distribution, 95 % within
+constexpr double quantile_of_two = 2.24;  ///< for 95 % in both of two tests
 
 /// Sums over the pixels of a block, each weighted by w.
 struct Sums {
@@ -65,11 +65,11 @@ PictureError PictureError::of_all(std::initializer_list<PictureError> errors) {
 PictureError error_interval(const SquaredError& e) {
     PictureError result;
     if (!(e.norm > 0.0) || !std::isfinite(e.variance)) return result;
-    const double within = quantile * std::sqrt(e.variance), squared = e.noise + e.rest;
+    const double squared = e.noise + e.rest, above = std::sqrt(e.variance + e.more_above);
     result.error = std::sqrt(std::max(squared, e.noise) / e.norm);
-    result.low = std::sqrt(std::max(0.0, squared - within) / e.norm);
-    result.high = std::sqrt(std::max(squared + within, e.noise) / e.norm);
-    result.rule_high = std::sqrt((std::max(squared, e.noise) + within) / e.norm);  // Eq. (5)
+    result.low = std::sqrt(std::max(0.0, squared - normal_quantile * std::sqrt(e.variance)) / e.norm);
+    result.high = std::sqrt(std::max(squared + normal_quantile * above, e.noise) / e.norm);
+    result.rule_high = std::sqrt((std::max(squared, e.noise) + quantile_of_two * above) / e.norm);  // Eq. (5)
     return result;
 }
 

@@ -34,9 +34,10 @@
 // ends where the rest is lowest by chance: with few passes, far below zero. The square of a bias is not, so
 // the upper end for rules is
 //
-//   noise + max(0, rest) + 1.96 s,                                                                      (5)
+//   noise + max(0, rest) + 2.24 s,                                                                      (5)
 //
-// which is low only where s is small.
+// which is low only where s is small. Tests that follow each other share most of their passes: all that
+// matter are taken for two, each of which may fail half as often (Bonferroni).
 #pragma once
 
 #include <array>
@@ -65,12 +66,16 @@ struct PictureError {
     static PictureError of_all(std::initializer_list<PictureError> errors);
 };
 
+inline constexpr double normal_quantile = 1.96;  ///< 95 % of the normal distribution are within
+
 /// Squared error in the measure of Eq. (2) of relative_error.h, before it is divided by the norm.
 struct SquaredError {
     double noise = 0.0;     ///< that is known
     double rest = 0.0;      ///< whose mean is the square of the bias
     double variance = 0.0;  ///< of `rest`
     double norm = 0.0;      ///< sum w |r|^2
+    /// What the variance has more where the mean of `rest` is at the upper end.
+    double more_above = 0.0;
 };
 
 /// Interval of 95 % confidence; not known without a norm or a finite variance.

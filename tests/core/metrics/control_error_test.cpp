@@ -124,15 +124,29 @@ TEST_CASE("Without control pixels the error is that of the halves", "[metrics][c
     CHECK(with_controls(before, {4.0, 3.0}).norm == before.norm);
 }
 
-TEST_CASE("The variance of control pixels is that of the mean of both rests, or what their terms show",
+TEST_CASE("The variance of control pixels depends on the rest, and on what their terms show",
           "[metrics][controls]") {
-    const ControlEstimate of_controls{2.0, 3.0, 4.0, 5.0, 6.0};
-    CHECK(of_controls.variance(0.0) == 6.0);
-    CHECK(of_controls.variance(2.0) == 3.0 + 2.0 * 4.0 + 4.0 * 5.0);
-    const SquaredError both = with_controls({0.0, 4.0, 69.0, 1.0}, of_controls);  // of 3: 3 + 12 + 45 = 60
-    CHECK(both.rest == Approx((4.0 * 60.0 + 2.0 * 69.0) / 129.0));
-    CHECK(both.variance == Approx(60.0 * 69.0 / 129.0));
+    // 31 where the rest is 2, of which the terms show twice as much.
+    const ControlEstimate of_controls{2.0, 3.0, 4.0, 5.0, 62.0};
+    CHECK(of_controls.variance(0.0) == Approx(2.0 * 3.0));
+    CHECK(of_controls.variance(2.0) == Approx(62.0));
+    CHECK(ControlEstimate{2.0, 3.0, 4.0, 5.0, 6.0}.variance(2.0) == Approx(31.0));
+    const SquaredError both = with_controls({0.0, 4.0, 40.0, 1.0}, of_controls);  // of 3: 120
+    CHECK(both.rest == Approx(3.5));
+    CHECK(both.variance == Approx(30.0));
     CHECK(with_controls({0.0, -4.0, 6.0, 1.0}, of_controls).rest == Approx(-1.0));  // of none: 6
+}
+
+TEST_CASE("The interval ends above where the estimate would be low by 1.96 standard errors",
+          "[metrics][controls]") {
+    const ControlEstimate of_controls{2.0, 4.8, 4.0, 0.05, 0.0};
+    const SquaredError both = with_controls({0.0, 2.0, 13.0, 1.0}, of_controls);  // variance of 2: 13
+    const PictureError said = error_interval(both);
+    const double end = sqr(said.high), deviation = std::sqrt(0.25 * (13.0 + of_controls.variance(end)));
+    CHECK(both.rest == Approx(2.0));
+    CHECK(end == Approx(2.0 + normal_quantile * deviation).epsilon(0.02));
+    CHECK(end > 2.0 + normal_quantile * std::sqrt(both.variance));
+    CHECK(with_controls({0.0, 2.0, 13.0, 1.0}, {2.0, 13.0}).more_above == 0.0);
 }
 
 TEST_CASE("One control pixel for each pixel, without noise, makes the error exact", "[metrics][controls]") {
