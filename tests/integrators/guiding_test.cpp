@@ -124,7 +124,8 @@ TEST_CASE("Guided paths keep the mean among panes and bent normals", "[guiding][
 
 TEST_CASE("Guided paths keep the mean in a homogeneous medium", "[guiding][equality]") {
     const auto scene = scene_from(box(grey, forward_fog), 16);
-    // By 3000 a block of the picture differed by z = 3.51, against 3.40, on one processor; by these it agrees.
+    // By 3000 a block of the picture differed by z = 3.51, against 3.40, on one processor; by these it
+    // agrees.
     check_equal(*scene, "volpath", 12000);
     check_equal(*scene, "volpath", 3000, R"(<float name="vpl_bound" value="4"/>)");
 }
