@@ -60,10 +60,10 @@ SquaredError with_controls(const SquaredError& of_halves, const ControlEstimate&
     const double a = of_halves.variance, b = of_controls.variance(r);
     if (!std::isfinite(b) || !(a + b > 0.0)) return of_halves;
     SquaredError result = of_halves;
-    const double of_first = b / (a + b);
-    result.rest = of_first * of_halves.rest + (1.0 - of_first) * of_controls.rest;
+    const double weight_of_halves = b / (a + b);
+    result.rest = weight_of_halves * of_halves.rest + (1.0 - weight_of_halves) * of_controls.rest;
     const auto variance = [&](double at) {
-        return sqr(of_first) * a + sqr(1.0 - of_first) * of_controls.variance(at);
+        return sqr(weight_of_halves) * a + sqr(1.0 - weight_of_halves) * of_controls.variance(at);
     };
     result.variance = variance(r);
     double end = r;

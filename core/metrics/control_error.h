@@ -7,10 +7,10 @@
 //   B = sum_i A_i w (<a' - f_a, b' - f_b> - v),   a' = b' = c,                                          (1)
 //
 // 1 / A_i being how often pixel i is chosen on average, has the mean <e_a, e_b> as well: the noise of c is
-// independent of the passes, and |c|^2 - v has the mean |mu|^2. That is the product of all pairs of
-// samples, of half the variance that halves of them would have; a rare bright sample cancels. Parts of the
-// light without samples of their own are in a' and b' as the halves of the passes have them. For a
-// rest R it has the variance of this noise and of the choice of the m pixels,
+// independent of the passes, and |c|^2 - v has the mean |mu|^2. That is the product of all pairs of samples,
+// of half the variance that halves of them would have; a rare bright sample cancels. Parts of the light
+// without samples of their own are in a' and b' as the halves of the passes have them. Where the rest is R,
+// B has the variance of this noise and of the choice of the m pixels,
 //
 //   s'^2 = sum_i A_i^2 w^2 (2 v_1 v_2 + v |f_a - f_b|^2) + 4 R / m sum_i A_i w v
 //          + Y / 4 + R^2 (Y / (sum y)^2 - 1 / m),   y = w |f_a - f_b|^2,   Y = sum A y^2,                (2)
@@ -25,7 +25,6 @@
 // that rest R from which the estimate is 1.96 times s(R) away (a score interval, Wilson 1927).
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <limits>
 #include <span>

@@ -83,6 +83,10 @@ def reference_of(args, scene, folder):
     return file
 
 
+def seeds_of(args):
+    return range(args.first_seed, args.first_seed + args.seeds)
+
+
 def root_mean_square(values):
     return math.sqrt(sum(v * v for v in values) / len(values))
 
@@ -91,7 +95,7 @@ def study(args, scene, name, reference, folder):
     """Counts of seeds; None where the error is not known."""
     rule = ["--error", str(args.error)] if args.error else ["--passes", str(args.passes)]
     errors, lows, highs, counts = [], [], [], {"in": 0, "above": 0, "below": 0, "optimist": 0, "in time": 0}
-    for seed in range(args.first_seed, args.first_seed + args.seeds):
+    for seed in seeds_of(args):
         file = folder / "image.exr"
         said = render(args, scene, METHODS[name], rule, seed, file)
         interval = said["error"]
@@ -129,7 +133,7 @@ def study(args, scene, name, reference, folder):
 def cost(args, scene, name, reference, folder):
     """Error and processor time with halves of the passes, over those without."""
     errors, seconds = {False: [], True: []}, {False: 0.0, True: 0.0}
-    for seed in range(1, args.seeds + 1):
+    for seed in seeds_of(args):
         for interval in (False, True) if seed % 2 else (True, False):
             file = folder / "image.exr"
             said = render(args, scene, METHODS[name], ["--passes", str(args.passes)], seed, file, interval)
