@@ -35,49 +35,6 @@ bool pixel_is_finite(const PassImage& image, std::size_t pixel) {
 
 }  // namespace
 
-std::uint32_t Film::Part::complete_blocks(std::size_t k) const {
-    const std::uint64_t before = (std::uint64_t(first) + (1ull << (k + 1)) - 1) >> (k + 1);
-    const std::uint64_t end = std::uint64_t(first + passes) >> (k + 1);
-    return std::uint32_t(end - std::min(before, end));
-}
-
-/// A block of passes behind those that a part has: joined with those before it to the largest aligned blocks,
-/// as a binary counter carries.
-class Film::NewBlock {
-  public:
-    NewBlock(Part& part, std::uint32_t level, std::size_t pixels) : part_(part), level_(level) {
-        std::vector<Block>& blocks = part.blocks;
-        for (; joins_ < blocks.size(); ++joins_) {
-            const Block& before = blocks[blocks.size() - 1 - joins_];
-            if (before.level != level + joins_ || (before.first >> before.level) % 2 == 1) break;
-        }
-        while (part.half_squares.size() < level + joins_) part.half_squares.emplace_back(pixels);
-        if (joins_ == 0) blocks.push_back({part.first + part.passes, level, std::vector<float>(pixels)});
-        target_ = blocks.size() - std::max<std::size_t>(joins_, 1);
-    }
-    /// Its sum of a pixel.
-    void put(std::size_t pixel, float sum) {
-        for (std::size_t k = 0; k < joins_; ++k) {
-            const float before = part_.blocks[part_.blocks.size() - 1 - k].sums[pixel];
-            const double difference = double(before) - double(sum);
-            part_.half_squares[level_ + k].add(pixel, difference * difference);
-            sum += before;
-        }
-        part_.blocks[target_].sums[pixel] = sum;
-    }
-    /// After all pixels.
-    void finish() {
-        part_.blocks[target_].level = level_ + std::uint32_t(joins_);
-        part_.blocks.resize(target_ + 1);
-        part_.passes += 1u << level_;
-    }
-
-  private:
-    Part& part_;
-    std::uint32_t level_;
-    std::size_t joins_ = 0, target_ = 0;
-};
-
 KeptSums KeptSums::from_bits(std::uint32_t bits) {
     if (bits > 5) throw std::invalid_argument("sums of an unknown kind");
     return {(bits & 1u) != 0, PassSplit(bits >> 1)};
@@ -92,6 +49,8 @@ Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares, P
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         const std::size_t kept = has_squares(i) && splits_layer(split_, layers_[i]) ? 3 * pixels() : 0;
         odd_sums_.emplace_back(kept), odd_squares_.emplace_back(kept);
+        const bool blocks = split_ == PassSplit::whole && layers_[i].squares && !layers_[i].auxiliary;
+        layer_blocks_.emplace_back(blocks ? pixels() : 0, PassBlocks::Keeps::largest);
     }
     replaced_.resize(layers_.size());
     find_parts();
@@ -198,22 +157,32 @@ void Film::add_pass(const PassImage& image, std::size_t index, double work) {
     check_room(part, 1);
     for (Replacement& replaced : replaced_) replaced = {};
 
-    NewBlock block(part, 0, pixels());
+    PassBlocks::Next block(part.blocks, next_pass(index));
+    struct OfLayer {
+        std::span<const Rgb> light;
+        PassBlocks::Next block;
+    };
+    std::vector<OfLayer> of_layers;
+    for (std::size_t i = 0; i < part.layers.size(); ++i)
+        if (PassBlocks& blocks = layer_blocks_[part.layers[i]]; blocks.pixels() > 0)
+            of_layers.push_back({image.layer(i), {blocks, next_pass(index)}});
     // Pixels are independent of each other, so the order of tasks does not matter to any bit.
     non_finite_ += tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, pixels(), pixel_grain), std::uint64_t(0),
         [&](const auto& range, std::uint64_t dropped) {
             for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
-                if (pixel_is_finite(image, pixel))
-                    block.put(pixel, add_pixel(image, part, pixel));
-                else
-                    block.put(pixel, 0.0f), ++dropped;
+                const bool finite = pixel_is_finite(image, pixel);
+                block.put(pixel, finite ? add_pixel(image, part, pixel) : 0.0f);
+                for (OfLayer& of : of_layers)
+                    of.block.put(pixel, finite ? of.light[pixel][block_channel(pixel)] : 0.0f);
+                if (!finite) ++dropped;
             }
             return dropped;
         },
         std::plus<>());
-    part.work += work;
     block.finish();
+    for (OfLayer& of : of_layers) of.block.finish();
+    part.work += work, ++part.passes;
 }
 
 void Film::add(const Film& next) {
@@ -221,7 +190,8 @@ void Film::add(const Film& next) {
                 next.parts() == parts() && next.all_squares_ == all_squares_ && next.split_ == split_;
     for (std::size_t i = 0; fits && i < layers_.size(); ++i)
         fits = layers_[i].name == next.layers_[i].name && layers_[i].part == next.layers_[i].part &&
-               has_squares(i) == next.has_squares(i);
+               layers_[i].squares == next.layers_[i].squares &&
+               layers_[i].auxiliary == next.layers_[i].auxiliary;
     for (std::size_t i = 0; fits && i < parts(); ++i) fits = next_pass(i) == next.first_pass(i);
     if (!fits) throw std::invalid_argument("the film does not continue this one");
     for (std::size_t i = 0; i < parts(); ++i) check_room(parts_[i], next.parts_[i].passes);
@@ -242,14 +212,9 @@ void Film::add(const Film& next) {
         add_sums(part.beauty_squares, more.beauty_squares), add_sums(part.odd_beauty, more.odd_beauty);
         add_sums(part.odd_squares, more.odd_squares);
         for (std::size_t g = 0; g < part.groups.size(); ++g) add_sums(part.groups[g], more.groups[g]);
-        while (part.half_squares.size() < more.half_squares.size()) part.half_squares.emplace_back(pixels());
-        for (std::size_t k = 0; k < more.half_squares.size(); ++k)
-            add_sums(part.half_squares[k], more.half_squares[k]);
-        for (const Block& of_more : more.blocks) {
-            NewBlock block(part, of_more.level, pixels());
-            for_each_pixel(pixels(), [&](std::size_t p) { block.put(p, of_more.sums[p]); });
-            block.finish();
-        }
+        for (const std::size_t layer : part.layers)
+            layer_blocks_[layer].add(next.layer_blocks_[layer], part.range());
+        part.passes = part.blocks.add(more.blocks, part.range()).count;
         part.work += more.work;
     }
     non_finite_ += next.non_finite_;

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "core/film/exact_sums.h"
+#include "core/film/pass_blocks.h"
 #include "core/film/pass_split.h"
 #include "core/math/sampler.h"
 #include "core/metrics/control_error.h"
@@ -107,6 +108,18 @@ class Film {
     bool has_squares(std::size_t layer) const { return !layer_squares_.at(layer).empty(); }
     /// Variance of a layer's mean, over the passes of Layer::where; needs has_squares(layer).
     std::vector<Rgb> layer_variance_of_mean(std::size_t layer, double unit = 1.0) const;
+    /// How the passes of a layer depend on each other, as points of one sequence: the square of the
+    /// difference of the halves of their largest block of 2^level, in one channel of each pixel,
+    /// block_channel().
+    struct BlockDifference {
+        std::uint32_t level = 0;
+        std::span<const float> squares;  ///< of the difference of sums; empty: not known
+    };
+    BlockDifference block_difference(std::size_t layer) const {
+        return {layer_blocks_.at(layer).largest_level(), layer_blocks_[layer].largest_difference()};
+    }
+    /// All three in turn, pixel by pixel.
+    int block_channel(std::size_t pixel) const { return int((pixel + pixel / std::size_t(width_)) % 3); }
     /// True where the film keeps the halves of a layer.
     bool has_halves(std::size_t layer) const { return !odd_sums_.at(layer).empty(); }
     /// Number of passes of a half of a part: 0, of even index, or 1, of odd index.
@@ -175,33 +188,26 @@ class Film {
     void deserialize(std::span<const std::byte> bytes);
 
   private:
-    /// 2^level passes from `first` on, a multiple of that: the sum of the mean of the beauty's channels.
-    struct Block {
-        std::uint32_t first = 0, level = 0;
-        std::vector<float> sums;
-    };
     struct Part {
         std::uint32_t first = 0, passes = 0;
         double work = 0.0;
         ExactSums beauty_squares;                ///< three channels
         ExactSums odd_beauty, odd_squares;       ///< of the passes of odd index
         std::vector<ExactSums> groups;           ///< of the beauty: three channels
-        std::vector<Block> blocks;               ///< the largest that its passes consist of, in order
-        std::vector<ExactSums> half_squares;     ///< [k]: how the halves of blocks of 2^(k+1) differ, squared
+        PassBlocks blocks;                       ///< of the mean of the beauty's channels
         std::vector<std::size_t> layers;         ///< in order
         std::vector<std::size_t> beauty_layers;  ///< those that are not auxiliary, in order
         Part(std::size_t pixels, PassSplit split)
             : beauty_squares(3 * pixels),
               odd_beauty(split == PassSplit::halves ? 3 * pixels : 0),
               odd_squares(split == PassSplit::halves ? 3 * pixels : 0),
-              groups(split == PassSplit::groups ? pass_group_count : 0, ExactSums(3 * pixels)) {}
+              groups(split == PassSplit::groups ? pass_group_count : 0, ExactSums(3 * pixels)),
+              blocks(pixels) {}
         /// True if the next pass has an odd index.
         bool odd_is_next() const { return (first + passes) % 2 == 1; }
         std::uint32_t next_group() const { return (first + passes) % pass_group_count; }
-        /// Number of complete blocks of 2^(k+1) passes.
-        std::uint32_t complete_blocks(std::size_t k) const;
+        PassBlocks::Range range() const { return {first, passes}; }
     };
-    class NewBlock;
     void find_parts();
     void find_where();
     float add_pixel(const PassImage& image, Part& part, std::size_t pixel);
@@ -224,8 +230,6 @@ class Film {
     /// without it.
     double shown_sum(const Part& part, double of_passes, double gain, std::span<const double> weights,
                      double unit) const;
-    /// d[k] of core/film/sobol_gain.h.
-    std::vector<double> differences(const Part& part, std::span<const double> weights, double unit) const;
     std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares,
                                       double unit) const;
     /// Number of passes that the mean of a layer is over, for a pixel.
@@ -242,6 +246,7 @@ class Film {
     std::vector<ExactSums> sums_;                    ///< one per layer: [3 pixel + channel]
     std::vector<ExactSums> layer_squares_;           ///< one per layer, empty where not kept
     std::vector<ExactSums> odd_sums_, odd_squares_;  ///< of passes of odd index; of layers of the beauty
+    std::vector<PassBlocks> layer_blocks_;           ///< one per layer; empty where not kept
     std::vector<std::size_t> where_;                 ///< index of Layer::where, or that of no layer
     Replacements replaced_;
 };

@@ -25,16 +25,6 @@ double unit_of(std::span<const Rgb> picture) {
 
 }  // namespace
 
-std::vector<double> Film::differences(const Part& part, std::span<const double> weights, double unit) const {
-    std::vector<double> d;
-    for (std::size_t k = 0; part.complete_blocks(k) > 0; ++k) {
-        double squares = 0.0;
-        for (std::size_t p = 0; p < pixels(); ++p) squares += weights[p] * part.half_squares[k].at(p);
-        d.push_back(squares / (unit * unit) / part.complete_blocks(k) / std::exp2(double(k) + 2.0));
-    }
-    return d;
-}
-
 std::vector<Rgb> Film::mean_of_passes() const {
     std::vector<Rgb> picture(pixels());
     for (std::size_t p = 0; p < pixels(); ++p)
@@ -109,7 +99,7 @@ Film::GainAndNoise Film::gain_and_noise() const {
             sum += v, squares += v * v;
         }
         if (!(squares > 0.0)) continue;
-        const std::vector<double> d = differences(parts_[i], weights.weight, unit);
+        const std::vector<double> d = parts_[i].blocks.differences(weights.weight, unit, parts_[i].range());
         // A filter weights the errors of pixels, which are independent: what it leaves is as much smaller.
         // Where the film begins later, blocks are fewer: what they cannot say of longer ones is not counted.
         const auto passes = std::uint32_t(std::min<std::uint64_t>(parts_[i].passes, (2ull << d.size()) - 1));

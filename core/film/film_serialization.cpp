@@ -2,7 +2,6 @@
 // Little-endian, as every machine this runs on. Which blocks of passes there are follows from their numbers.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -20,7 +19,7 @@ namespace {
 
 struct Header {
     std::array<char, 8> magic = {'m', 'o', 't', 'e', 'f', 'i', 'l', 'm'};
-    std::uint32_t version = 5;
+    std::uint32_t version = 6;
     std::uint32_t width = 0, height = 0, layers = 0, kept = 0, parts = 0;
     std::uint64_t non_finite = 0;
 };
@@ -29,18 +28,6 @@ struct PartHeader {
     std::uint32_t first = 0, passes = 0;
     double work = 0.0;
 };
-
-/// Calls body(first, level) for the largest aligned blocks that passes consist of, in order.
-template <typename Body>
-void for_each_block(std::uint64_t first, std::uint64_t passes, const Body& body) {
-    for (const std::uint64_t end = first + passes; first < end;) {
-        const auto fits = std::uint32_t(std::bit_width(end - first) - 1);
-        const std::uint32_t level =
-            first == 0 ? fits : std::min(fits, std::uint32_t(std::countr_zero(first)));
-        body(std::uint32_t(first), level);
-        first += 1ull << level;
-    }
-}
 
 /// Could these be sums of so many terms? Each adds less than 2^40 to a digit; of larger ones the sum of two
 /// films would leave 64 bits.
@@ -68,9 +55,9 @@ void Film::for_each_array(AnyFilm& film, const Body& body) {
         ExactSums::for_each_array(part.odd_beauty, body);
         ExactSums::for_each_array(part.odd_squares, body);
         for (auto& sums : part.groups) ExactSums::for_each_array(sums, body);
-        for (auto& block : part.blocks) body(block.sums);
-        for (auto& sums : part.half_squares) ExactSums::for_each_array(sums, body);
+        PassBlocks::for_each_array(part.blocks, body);
     }
+    for (auto& blocks : film.layer_blocks_) PassBlocks::for_each_array(blocks, body);
 }
 
 std::vector<std::byte> Film::serialize(const MemoryBudget& memory) const {
@@ -145,14 +132,8 @@ void Film::deserialize(std::span<const std::byte> bytes) {
     for (std::size_t i = 0; i < heads.size(); ++i) {
         Part& part = read.parts_[i];
         part.first = heads[i].first, part.passes = heads[i].passes, part.work = heads[i].work;
-        for_each_block(part.first, part.passes, [&](std::uint32_t first, std::uint32_t level) {
-            expect(pixels());
-            part.blocks.push_back({first, level, std::vector<float>(pixels())});
-        });
-        while (part.complete_blocks(part.half_squares.size()) > 0) {
-            expect(3 * pixels());
-            part.half_squares.emplace_back(pixels());
-        }
+        part.blocks.allocate(part.range(), expect);
+        for (const std::size_t layer : part.layers) read.layer_blocks_[layer].allocate(part.range(), expect);
     }
     std::vector<Packing> packings;
     auto rest = content.subspan(sizeof(header) + head_bytes);
@@ -175,12 +156,14 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         const std::uint32_t passes = read.parts_[layers_[i].part].passes;
         for (const auto* sums : {&read.sums_, &read.layer_squares_, &read.odd_sums_, &read.odd_squares_})
             fits = fits && can_be((*sums)[i], passes);
+        for (const ExactSums& sums : read.layer_blocks_[i].half_squares())
+            fits = fits && can_be(sums, passes);
     }
     for (const Part& part : read.parts_) {
         for (const ExactSums* sums : {&part.beauty_squares, &part.odd_beauty, &part.odd_squares})
             fits = fits && can_be(*sums, part.passes);
-        for (const auto* sums : {&part.half_squares, &part.groups})
-            for (const ExactSums& s : *sums) fits = fits && can_be(s, part.passes);
+        for (const ExactSums& sums : part.groups) fits = fits && can_be(sums, part.passes);
+        for (const ExactSums& sums : part.blocks.half_squares()) fits = fits && can_be(sums, part.passes);
     }
     if (!fits) throw InputError("the film is damaged: it holds a number that cannot be");
     *this = std::move(read);

@@ -29,17 +29,8 @@ double work_of_pixel(const Film& film) {
     return work / double(film.pixels());
 }
 
-/// Mean and its variance, by the passes alone: an earlier call, for a preview, may have replaced them.
-struct LayerOfPasses {
-    std::vector<Rgb> mean;
-    std::vector<Rgb> variance;  ///< infinity after too few passes
-};
-
-LayerOfPasses of_passes(Film& film, std::size_t layer, std::uint32_t fewest) {
-    film.set_mean(layer, {});
-    const bool known = film.pass_count(film.layers()[layer].part) >= fewest;
-    return {film.mean(layer),
-            known ? film.layer_variance_of_mean(layer) : std::vector<Rgb>(film.pixels(), Rgb(infinity))};
+LayerOfPasses of_half(const Film& film, std::size_t layer, int half) {
+    return {film.half_mean(layer, half), film.half_variance_of_mean(layer, half)};
 }
 
 /// The fraction of all light in each layer: for pixels where no path has met any.
@@ -148,9 +139,9 @@ bool LayerFilter::has_halves(const Film& film) const {
 void LayerFilter::apply_to_halves(Film& film, const Choice& choice, CancelToken cancelled) {
     std::array<std::vector<Rgb>, 2> shown;
     for (const int half : {0, 1}) {
-        const std::vector<Rgb> mean = film.half_mean(choice.layer, half),
-                               variance = film.half_variance_of_mean(choice.layer, half);
-        shown[std::size_t(half)] = filter_->filtered({mean, variance, choice.kind}, cancelled).mean;
+        const LayerOfPasses layer = of_half(film, choice.layer, half);
+        shown[std::size_t(half)] =
+            filter_->filtered({layer.mean, layer.variance, choice.kind}, cancelled).mean;
     }
     film.set_halves(choice.layer, std::move(shown));
 }
@@ -183,10 +174,17 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
 }
 
 void LayerFilter::apply_to_mean(Film& film, const Choice& choice, CancelToken cancelled) {
-    const LayerOfPasses layer = of_passes(film, choice.layer, fewest_passes());
+    const LayerOfPasses layer = of_passes(film, choice.layer);
     auto filtered = filter_->filtered({layer.mean, layer.variance, choice.kind}, cancelled);
     film.set_mean(choice.layer, filtered.mean, filtered.variance);
     variances_.push_back(std::move(filtered.variance));
+}
+
+LayerOfPasses LayerFilter::of_passes(Film& film, std::size_t layer) const {
+    // Our own filter compares noise with details of several pixels, and is tested with that of independent
+    // passes.
+    return has_variance_ ? layer_of_passes(film, layer, 2, PassVariance::independent)
+                         : layer_of_passes(film, layer, 4, PassVariance::points);
 }
 
 bool LayerFilter::joins_layers(const Film& film) const {
@@ -245,15 +243,13 @@ void LayerFilter::apply_to_sum(Film& film, const Kind& kind, screenspace::Filter
         return filtered_sum(*filter_, std::move(all), kind.kind, quality, cancelled);
     };
     if (!has_halves(film)) {
-        const auto means = shown([&](std::size_t layer) { return of_passes(film, layer, fewest_passes()); });
+        const auto means = shown([&](std::size_t layer) { return of_passes(film, layer); });
         for (std::size_t i = 0; i < layers.size(); ++i) film.set_mean(layers[i], means[i]);
         return;
     }
     std::array<std::vector<std::vector<Rgb>>, 2> means;
     for (const int half : {0, 1})
-        means[std::size_t(half)] = shown([&](std::size_t layer) {
-            return LayerOfPasses{film.half_mean(layer, half), film.half_variance_of_mean(layer, half)};
-        });
+        means[std::size_t(half)] = shown([&](std::size_t layer) { return of_half(film, layer, half); });
     for (std::size_t i = 0; i < layers.size(); ++i)
         film.set_halves(layers[i], {std::move(means[0][i]), std::move(means[1][i])});
 }

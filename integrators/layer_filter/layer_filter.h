@@ -9,6 +9,7 @@
 
 #include "core/film/film.h"
 #include "core/parameters/add_type.h"
+#include "integrators/layer_filter/layer_of_passes.h"
 #include "integrators/layer_filter/scene_features.h"
 #include "screenspace/layer_filter/view_filter.h"
 
@@ -81,10 +82,10 @@ class LayerFilter {
     };
     std::vector<Kind> kinds(const core::Film& film) const;
     bool joins_layers(const core::Film& film) const;
-    /// Passes from which on a variance is used. Around a bright pixel that one of two passes has, the
-    /// denoised layer differs from the mean by more than the noise of the dark pixels there, and would be
-    /// mixed with it in rings.
-    std::uint32_t fewest_passes() const { return has_variance_ ? 2 : 4; }
+    /// Its variance is used from two passes on, or four: around a bright pixel that one of two passes has,
+    /// the layer by OpenImageDenoise differs from the mean by more than the noise of the dark pixels there,
+    /// and would be mixed with it in rings.
+    LayerOfPasses of_passes(core::Film& film, std::size_t layer) const;
     /// Features of the quality that the film's work is worth.
     void find_features(const core::Film& film, core::CancelToken cancelled);
     void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);

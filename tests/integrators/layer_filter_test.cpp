@@ -293,3 +293,47 @@ TEST_CASE("What cannot be filtered is said", "[layer_filter]") {
     options.cancelled = stop;
     CHECK_THROWS_AS(find_filter_features(*scene, options, {}), Cancelled);
 }
+
+TEST_CASE("the variance of a layer's mean is the spread over seeds", "[layer_filter][statistics][long]") {
+    // Edges of a chequerboard, of a lamp in view and of what it lights: Sobol points show them much better
+    // than independent ones. Of light reflected often they are no better.
+    const std::string checkered =
+        R"(<bsdf type="twosided"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance">
+        <rgb name="color0" value="0.7, 0.6, 0.5"/><rgb name="color1" value="0.2, 0.3, 0.4"/>
+        <transform name="to_uv"><scale x="7" y="7"/></transform></texture></bsdf></bsdf>)";
+    const auto scene = scene_from(box(checkered, ""), 40);
+    const auto integrator = integrator_from(R"(<integrator type="mote_layers"/>)");
+    constexpr std::uint64_t seeds = 16;
+    constexpr std::uint32_t passes = 128;
+    std::vector<Film> films;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        films.emplace_back(40, 40, film_layers(*scene, *integrator, {}));
+        PassRunner runner(*scene, *integrator, seed, films.back());
+        const std::atomic<bool> never{false};
+        while (films.back().pass_count() < passes) runner.run_pass(never);
+    }
+    for (const std::string name : {"emission", "direct", "indirect"}) {
+        const std::size_t layer = layer_called(films[0], name);
+        double points = 0.0, independent = 0.0, spread = 0.0;
+        std::vector<Rgb> mean(films[0].pixels(), Rgb(0.0f));
+        const double n = double(seeds) * double(mean.size());
+        for (Film& film : films) {
+            const LayerOfPasses of = layer_of_passes(film, layer, 2, PassVariance::points),
+                                as_independent = layer_of_passes(film, layer, 2, PassVariance::independent);
+            for (std::size_t p = 0; p < mean.size(); ++p) {
+                mean[p] += of.mean[p] / float(seeds);
+                points += double(average(of.variance[p])) / n;
+                independent += double(average(as_independent.variance[p])) / n;
+            }
+        }
+        for (const Film& film : films) spread += squared_error(film.mean(layer), mean) / (seeds - 1.0);
+        INFO(name << ": spread " << spread << ", of points " << points << ", of independent passes "
+                  << independent);
+        CHECK(points / spread < 2.0);  // Eq. (2) of local_gain.h: by less than a doubling
+        CHECK(points / spread > 0.5);
+        if (name == "indirect")
+            CHECK(independent / spread < 2.0);
+        else
+            CHECK(independent / spread > 4.0);
+    }
+}
