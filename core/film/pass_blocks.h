@@ -18,11 +18,11 @@ namespace mote::core {
 class PassBlocks {
   public:
     enum class Keeps : std::uint8_t { all, largest };
-    /// Of so many pixels; 0: keeps nothing.
+    /// `pixels` 0: keeps nothing.
     explicit PassBlocks(std::size_t pixels = 0, Keeps keeps = Keeps::all) : pixels_(pixels), keeps_(keeps) {}
     std::size_t pixels() const { return pixels_; }
-    /// Of the largest block, 2^level passes, the first of several: the squares of the difference of its
-    /// halves, by pixel. Empty for level 0. Needs Keeps::largest.
+    /// Squares of the difference of the halves of the largest block, 2^level passes, the first of several, by
+    /// pixel. Empty for level 0. Needs Keeps::largest.
     std::span<const float> largest_difference() const { return largest_difference_; }
     std::uint32_t largest_level() const { return largest_; }
 
@@ -74,7 +74,7 @@ class PassBlocks {
 /// A block behind those that there are.
 class PassBlocks::Next {
   public:
-    /// Of 2^level passes from `first` on.
+    /// Block of 2^level passes from `first` on.
     Next(PassBlocks& all, std::uint32_t first, std::uint32_t level = 0);
     /// Its sum of a pixel. Once a pixel, in any order, from any thread.
     void put(std::size_t pixel, float sum) {

@@ -16,7 +16,7 @@ LayerOfPasses layer_of_passes(Film& film, std::size_t layer, std::uint32_t fewes
     result.variance = film.layer_variance_of_mean(layer);
     const Film::BlockDifference block = film.block_difference(layer);
     if (from == PassVariance::independent || block.squares.empty()) return result;
-    // Of independent passes A - B has the variance of as many as the block has.
+    // A - B of independent passes has the variance of as many as the block has.
     const float of_block = std::exp2(float(block.level)) * float(passes);
     std::vector<float> expected(film.pixels());
     for (std::size_t p = 0; p < expected.size(); ++p)

@@ -8,10 +8,10 @@
 
 namespace mote::integrators {
 
-/// What the variance of a mean is taken from.
+/// Passes that the variance of a mean is taken from.
 enum class PassVariance : std::uint8_t {
-    independent,  ///< passes, as if they were
-    points        ///< passes as points of a sequence (screenspace/denoising/local_gain.h)
+    independent,  ///< as if they were
+    points        ///< as points of a sequence (screenspace/denoising/local_gain.h)
 };
 
 struct LayerOfPasses {
