@@ -17,10 +17,10 @@ double allocated() {
 
 constexpr int width = 500, height = 300;
 
-std::vector<Layer> layers(bool auxiliary, std::size_t parts) {
+std::vector<Layer> layers(bool auxiliary, std::size_t parts, bool squares = false) {
     std::vector<Layer> list;
     for (std::size_t i = 0; i < 3; ++i) {
-        list.push_back({"light" + std::to_string(i), ""});
+        list.push_back({"light" + std::to_string(i), "", false, squares});
         list.back().part = i % parts;
     }
     for (int i = 0; auxiliary && i < 4; ++i) list.push_back({"N" + std::to_string(i), "", true, true});
@@ -36,9 +36,10 @@ TEST_CASE("The memory of films and pictures is known before they are made", "[me
                 const PassSplit split = parts == 2    ? PassSplit::halves
                                         : passes == 6 ? PassSplit::whole
                                                       : PassSplit::groups;
-                const FilmMemory said(width, height, layers(auxiliary, parts), false, passes, split);
+                const auto all = layers(auxiliary, parts, auxiliary);  // filtered or not, too
+                const FilmMemory said(width, height, all, false, passes, split);
                 const double before = allocated();
-                Film film(width, height, layers(auxiliary, parts), false, split);
+                Film film(width, height, all, false, split);
                 const double begin = allocated() - before;
                 for (std::size_t part = 0; part < parts; ++part) {
                     const PassImage image(width, height, film.layers_of(part).size());
