@@ -108,13 +108,13 @@ class Film {
     bool has_squares(std::size_t layer) const { return !layer_squares_.at(layer).empty(); }
     /// Variance of a layer's mean, over the passes of Layer::where; needs has_squares(layer).
     std::vector<Rgb> layer_variance_of_mean(std::size_t layer, double unit = 1.0) const;
-    /// How the passes of a layer depend on each other, as points of one sequence: the square of the
-    /// difference of the halves of their largest block of 2^level, in one channel of each pixel,
-    /// block_channel().
+    /// How the passes of a layer depend on each other, as points of one sequence.
     struct BlockDifference {
-        std::uint32_t level = 0;
-        std::span<const float> squares;  ///< of the difference of sums; empty: not known
+        std::uint32_t level = 0;         ///< of its largest block, 2^level passes
+        std::span<const float> squares;  ///< of the difference of the sums over its halves; empty: not known
     };
+    /// In one channel of each pixel, block_channel(): of a film of whole passes, for layers that require
+    /// squares.
     BlockDifference block_difference(std::size_t layer) const {
         return {layer_blocks_.at(layer).largest_level(), layer_blocks_[layer].largest_difference()};
     }
