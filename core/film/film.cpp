@@ -49,8 +49,9 @@ Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares, P
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         const std::size_t kept = has_squares(i) && splits_layer(split_, layers_[i]) ? 3 * pixels() : 0;
         odd_sums_.emplace_back(kept), odd_squares_.emplace_back(kept);
-        const bool blocks = split_ == PassSplit::whole && layers_[i].squares && !layers_[i].auxiliary;
-        layer_blocks_.emplace_back(blocks ? pixels() : 0, PassBlocks::Keeps::largest);
+        layer_blocks_.emplace_back(keeps_blocks(split_, layers_[i]) ? pixels() : 0,
+                                   PassBlocks::Keeps::largest);
+        fine_sums_.push_back(keeps_fine(split_, layers_[i]) ? FineSums(width, height) : FineSums());
     }
     replaced_.resize(layers_.size());
     find_parts();
@@ -182,6 +183,7 @@ void Film::add_pass(const PassImage& image, std::size_t index, double work) {
         std::plus<>());
     block.finish();
     for (OfLayer& of : of_layers) of.block.finish();
+    for (std::size_t i = 0; i < part.layers.size(); ++i) fine_sums_[part.layers[i]].add(image, i);
     part.work += work, ++part.passes;
 }
 
@@ -191,7 +193,7 @@ void Film::add(const Film& next) {
     for (std::size_t i = 0; fits && i < layers_.size(); ++i)
         fits = layers_[i].name == next.layers_[i].name && layers_[i].part == next.layers_[i].part &&
                layers_[i].squares == next.layers_[i].squares &&
-               layers_[i].auxiliary == next.layers_[i].auxiliary;
+               layers_[i].auxiliary == next.layers_[i].auxiliary && layers_[i].fine == next.layers_[i].fine;
     for (std::size_t i = 0; fits && i < parts(); ++i) fits = next_pass(i) == next.first_pass(i);
     if (!fits) throw std::invalid_argument("the film does not continue this one");
     for (std::size_t i = 0; i < parts(); ++i) check_room(parts_[i], next.parts_[i].passes);
@@ -205,7 +207,8 @@ void Film::add(const Film& next) {
     };
     for (std::size_t i = 0; i < layers_.size(); ++i)
         add_sums(sums_[i], next.sums_[i]), add_sums(layer_squares_[i], next.layer_squares_[i]),
-            add_sums(odd_sums_[i], next.odd_sums_[i]), add_sums(odd_squares_[i], next.odd_squares_[i]);
+            add_sums(odd_sums_[i], next.odd_sums_[i]), add_sums(odd_squares_[i], next.odd_squares_[i]),
+            fine_sums_[i].add(next.fine_sums_[i]);
     for (std::size_t i = 0; i < parts(); ++i) {
         Part& part = parts_[i];
         const Part& more = next.parts_[i];

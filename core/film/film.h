@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "core/film/exact_sums.h"
+#include "core/film/fine_sums.h"
 #include "core/film/pass_blocks.h"
 #include "core/film/pass_split.h"
 #include "core/math/sampler.h"
@@ -120,6 +121,8 @@ class Film {
     }
     /// All three in turn, pixel by pixel.
     int block_channel(std::size_t pixel) const { return int((pixel + pixel / std::size_t(width_)) % 3); }
+    /// A layer at twice the resolution; empty where the film does not keep it.
+    const FineSums& fine_sums(std::size_t layer) const { return fine_sums_.at(layer); }
     /// True where the film keeps the halves of a layer.
     bool has_halves(std::size_t layer) const { return !odd_sums_.at(layer).empty(); }
     /// Number of passes of a half of a part: 0, of even index, or 1, of odd index.
@@ -247,6 +250,7 @@ class Film {
     std::vector<ExactSums> layer_squares_;           ///< one per layer, empty where not kept
     std::vector<ExactSums> odd_sums_, odd_squares_;  ///< of passes of odd index; of layers of the beauty
     std::vector<PassBlocks> layer_blocks_;           ///< one per layer; empty where not kept
+    std::vector<FineSums> fine_sums_;                ///< one per layer; empty where not kept
     std::vector<std::size_t> where_;                 ///< index of Layer::where, or that of no layer
     Replacements replaced_;
 };

@@ -18,14 +18,15 @@ FilmMemory::FilmMemory(int width, int height, std::span<const Layer> layers, boo
     : width_(width), height_(height), layers_(layers.size()) {
     const double pixels = double(width) * double(height);
     constexpr double sum = 2.0 * sizeof(std::int64_t) + 1.0;  // of ExactSums
-    double parts = 1.0, kept = 0.0, in_blocks = 0.0;
+    double parts = 1.0, kept = 0.0, in_blocks = 0.0, fine = 0.0;
     double planes = 4.0;  // beauty and its variance, and two while they are found
     for (const Layer& layer : layers) {
         const bool squares = all_squares || layer.squares;
         parts = std::max(parts, double(layer.part) + 1.0);
         kept += !squares ? 1.0 : splits_layer(split, layer) ? 4.0 : 2.0;
         planes += layer.auxiliary && squares ? 2.0 : 1.0;
-        if (split == PassSplit::whole && layer.squares && !layer.auxiliary) in_blocks += 1.0;
+        if (keeps_blocks(split, layer)) in_blocks += 1.0;
+        if (keeps_fine(split, layer)) fine += 1.0;
     }
     // 2^k passes have k differences of blocks; a block that waits for its other half is one of these in
     // floats.
@@ -34,9 +35,11 @@ FilmMemory::FilmMemory(int width, int height, std::span<const Layer> layers, boo
     const double of_beauty = split == PassSplit::halves   ? 3.0
                              : split == PassSplit::groups ? 1.0 + double(pass_group_count)
                                                           : 1.0;
-    begin_ = pixels * 3.0 * sum * (kept + of_beauty * parts);
+    begin_ =
+        pixels * 3.0 * sum * (kept + of_beauty * parts) + 4.0 * pixels * (3.0 * sum + sizeof(float)) * fine;
     sums_ = begin_ + pixels * (parts * blocks + in_blocks * (levels + 1.0) * sizeof(float));
-    pass_ = pixels * (double(layers.size()) * sizeof(Rgb) + parts);
+    pass_ =
+        pixels * (double(layers.size()) * sizeof(Rgb) + parts + (fine == 0.0 ? 0.0 : sizeof(std::uint32_t)));
     // Picture, variances, and their squares while they are smoothed, beside the image of the last pass.
     pass_ += pixels * (4.0 * sizeof(Rgb) + 6.0 * sizeof(double));
     if (split == PassSplit::halves)

@@ -2,6 +2,7 @@
 // Little-endian, as every machine this runs on. Which blocks of passes there are follows from their numbers.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -19,7 +20,7 @@ namespace {
 
 struct Header {
     std::array<char, 8> magic = {'m', 'o', 't', 'e', 'f', 'i', 'l', 'm'};
-    std::uint32_t version = 6;
+    std::uint32_t version = 7;
     std::uint32_t width = 0, height = 0, layers = 0, kept = 0, parts = 0;
     std::uint64_t non_finite = 0;
 };
@@ -41,6 +42,13 @@ bool can_be(const ExactSums& sums, std::uint32_t terms) {
     return fits;
 }
 
+/// A quarter may have several samples of one pass; all together are far fewer than a sum may have.
+bool can_be(const FineSums& fine) {
+    return can_be(fine.light(), ExactSums::max_terms) && std::ranges::all_of(fine.counts(), [](float count) {
+               return count >= 0.0f && count <= float(ExactSums::max_terms) && count == std::floor(count);
+           });
+}
+
 }  // namespace
 
 /// Every array that the film has, in the order of the file.
@@ -58,6 +66,7 @@ void Film::for_each_array(AnyFilm& film, const Body& body) {
         PassBlocks::for_each_array(part.blocks, body);
     }
     for (auto& blocks : film.layer_blocks_) PassBlocks::for_each_array(blocks, body);
+    for (auto& fine : film.fine_sums_) FineSums::for_each_array(fine, body);
 }
 
 std::vector<std::byte> Film::serialize(const MemoryBudget& memory) const {
@@ -165,6 +174,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         for (const ExactSums& sums : part.groups) fits = fits && can_be(sums, part.passes);
         for (const ExactSums& sums : part.blocks.half_squares()) fits = fits && can_be(sums, part.passes);
     }
+    for (const FineSums& fine : read.fine_sums_) fits = fits && can_be(fine);
     if (!fits) throw InputError("the film is damaged: it holds a number that cannot be");
     *this = std::move(read);
 }

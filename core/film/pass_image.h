@@ -24,6 +24,8 @@ struct Layer {
     std::size_t part = 0;         ///< of the picture: layers of one part have their passes together
     /// Light of the scene that the beauty leaves out, for Film::error(); auxiliary, with squares. One layer.
     bool missing = false;
+    /// Films of whole passes keep it at twice the resolution besides (fine_sums.h).
+    bool fine = false;
 };
 
 /// The picture of one pass: one value per pixel and layer, row by row from the top. Zero at the start.
@@ -55,10 +57,23 @@ class PassImage {
     void finish_late() { finishes_late_ = true; }
     std::span<const std::uint8_t> finished() const { return finished_; }
 
+    /// The places of samples are kept from now on.
+    void keep_places();
+    bool has_places() const { return !places_.empty(); }
+    static constexpr int max_reach = 7;  ///< a sample further from its pixel's middle has no place [pixels]
+    /// Where the sample of a pixel fell, from which all its light is.
+    void place(int x, int y, const Vec2& film);
+    static constexpr std::uint32_t nowhere = ~0u;  ///< outside of the picture
+    /// The quarter of a pixel that each sample fell into, by the pixel that it belongs to: numbered row by
+    /// row in an image of twice the size, or `nowhere`.
+    std::span<const std::uint32_t> places() const { return places_; }
+    void swap_places(PassImage& other) { places_.swap(other.places_); }
+
   private:
     int width_, height_;
     bool finishes_late_ = false;
     std::vector<std::uint8_t> finished_;
+    std::vector<std::uint32_t> places_;
     std::vector<std::vector<Rgb>> planes_;
 };
 

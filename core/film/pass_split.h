@@ -23,4 +23,15 @@ inline bool splits_layer(PassSplit split, const Layer& layer) {
     }
 }
 
+/// True where the film keeps block sums of a layer (pass_blocks.h): halves and groups show its variance
+/// themselves.
+inline bool keeps_blocks(PassSplit split, const Layer& layer) {
+    return split == PassSplit::whole && layer.squares && !layer.auxiliary;
+}
+
+/// True where the film keeps a layer at twice the resolution (fine_sums.h).
+inline bool keeps_fine(PassSplit split, const Layer& layer) {
+    return split == PassSplit::whole && layer.fine;
+}
+
 }  // namespace mote::core

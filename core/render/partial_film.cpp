@@ -1,5 +1,6 @@
 #include "core/render/partial_film.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "core/files/packed_numbers.h"
@@ -11,7 +12,7 @@ namespace mote::core {
 
 namespace {
 
-constexpr FileKind partial_file{{'m', 'o', 't', 'e', 'p', 'a', 'r', 't'}, 2, "a partial film of mote"};
+constexpr FileKind partial_file{{'m', 'o', 't', 'e', 'p', 'a', 'r', 't'}, 3, "a partial film of mote"};
 constexpr std::uint8_t kind_missing = 2;  ///< of a layer; 0: of the beauty, 1: auxiliary
 constexpr std::uint32_t max_layers = 10000, max_edge = 1u << 20;
 
@@ -32,15 +33,22 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
         layer.auxiliary = kind != 0, layer.missing = kind == kind_missing;
         layer.squares = reader.number<std::uint8_t>() != 0;
         layer.where = reader.text(), layer.transport = read_transport(reader.text());
-        layer.part = reader.number<std::uint32_t>();
+        layer.part = reader.number<std::uint32_t>(), layer.fine = reader.number<std::uint8_t>() != 0;
         if (layer.part >= count) throw InputError("damaged (a layer of no part)");
     }
     // Three channels a layer, three arrays of a sum: tested before memory is allocated that the file cannot
     // fill.
-    if (9 * std::uint64_t(count) * min_packed_size(std::uint64_t(width) * height) > file.film.size())
-        throw InputError("damaged (its length is wrong)");
+    const auto check_length = [&](std::uint64_t arrays, std::uint64_t numbers) {
+        if (arrays * min_packed_size(numbers) > file.film.size())
+            throw InputError("damaged (its length is wrong)");
+    };
+    const std::uint64_t pixels = std::uint64_t(width) * height;
+    check_length(9 * std::uint64_t(count), pixels);
     try {
         const KeptSums kept = KeptSums::from_bits(kept_bits);
+        const auto fine =
+            std::ranges::count_if(layers, [&](const Layer& layer) { return keeps_fine(kept.split, layer); });
+        check_length(9 * std::uint64_t(fine), 4 * pixels);
         PartialFilm partial{std::move(about),
                             Film(int(width), int(height), std::move(layers), kept.all_squares, kept.split)};
         partial.film.deserialize(file.film);
@@ -66,7 +74,7 @@ void write_partial_film(const std::string& path, const PartialFilm& partial) {
         head.number(std::uint8_t(layer.missing ? kind_missing : layer.auxiliary)),
             head.number(std::uint8_t(layer.squares));
         head.text(layer.where), head.text(transport_name(layer.transport));
-        head.number(std::uint32_t(layer.part));
+        head.number(std::uint32_t(layer.part)), head.number(std::uint8_t(layer.fine));
     }
     write_headed_file(path, partial_file, head, film.serialize());
 }

@@ -110,7 +110,7 @@ class EyeTask {
             if (context_.cancelled) return;
             TransportSum mean;
             for (int k = 0; k < samples_; ++k) {
-                const EyeRay eye = make_eye_ray(scene_, options_, context_of(k), x, y);
+                const EyeRay eye = eye_ray(context_of(k), x, y);
                 walk_.rng = eye.rng;
                 const TransportSum one = trace(eye);
                 for (std::size_t i = 0; i < transport_count; ++i)
@@ -132,7 +132,7 @@ class EyeTask {
     template <typename Paths>
     void trace_all(Paths& paths) {
         paths.clear();
-        for_each_pixel([&](int x, int y) { paths.start(make_eye_ray(scene_, options_, context_, x, y)); });
+        for_each_pixel([&](int x, int y) { paths.start(eye_ray(context_, x, y)); });
         paths.run();
         int number = 0;
         for_each_pixel([&](int x, int y) { store(paths.sum(number++), *image_, x, y, Media); });
@@ -147,11 +147,17 @@ class EyeTask {
         return {context_.index * std::uint32_t(samples_) + std::uint32_t(sample), context_.filter,
                 context_.cancelled, context_.part};
     }
+    /// The eye ray of a pixel; the image has its place where it is the only one.
+    EyeRay eye_ray(const core::PassContext& context, int x, int y) const {
+        const EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
+        if (samples_ == 1) image_->place(x, y, eye.film);
+        return eye;
+    }
     void start(const PacketPixels& pixels) {
         const core::PassContext eye = context_of(pixels.sample);
         for (int i = 0; i < EyePacket<Media>::width; ++i)
             if (const glm::ivec2 p = pixels.pixels[std::size_t(i)]; p.x >= 0)
-                packet().start(i, make_eye_ray(scene_, options_, eye, p.x, p.y));
+                packet().start(i, eye_ray(eye, p.x, p.y));
             else
                 packet().stop(i);
     }

@@ -46,17 +46,18 @@ class LayerFilter {
     ///
     /// After little work OpenImageDenoise takes the sum of all layers of a kind at once, each of which keeps
     /// its fraction of a pixel: more passes are then worth more than a run for each layer. After even less it
-    /// takes features of fewer eye rays and steps, with their noise. Work is counted, so this does not depend
-    /// on the machine.
+    /// takes features of fewer eye rays and steps, with their noise. After much work it takes layers at twice
+    /// the resolution where the film has them (screenspace/layer_filter/fine_pixels.h). Work is counted, so
+    /// this does not depend on the machine.
     void apply(core::Film& film, core::CancelToken cancelled = {});
 
     /// apply() for a preview: OpenImageDenoise takes sums always, and quickly. Returns true where it is the
     /// same: for our own filter.
     bool apply_for_preview(core::Film& film, core::CancelToken cancelled = {});
-    /// Wall time of apply() without features, by that of the last call of either [s].
+    /// Wall time of apply(), by that of the last call of either and of features so far [s].
     double seconds_to_apply(const core::Film& film) const {
-        const std::size_t runs = joins_layers(film) ? kinds(film).size() : layers_.size();
-        return seconds_per_run_ * double(runs) * (has_halves(film) ? 2.0 : 1.0);
+        const double features = needs_quarters(film) ? feature_seconds_ : 0.0;
+        return features + seconds_per_run_ * runs(film);
     }
 
     const std::vector<Choice>& layers() const { return layers_; }
@@ -88,6 +89,13 @@ class LayerFilter {
     LayerOfPasses of_passes(core::Film& film, std::size_t layer) const;
     /// Features of the quality that the film's work is worth.
     void find_features(const core::Film& film, core::CancelToken cancelled);
+    /// True for a layer that is denoised at twice the resolution, in films of whole passes.
+    bool is_fine(const core::Film& film, std::size_t layer) const;
+    bool needs_quarters(const core::Film& film) const;  ///< whose features are not found yet
+    void find_quarters(const core::Film& film, core::CancelToken cancelled);
+    void apply_to_fine(core::Film& film, std::size_t layer, core::CancelToken cancelled);
+    /// Time of apply() in that of one layer.
+    double runs(const core::Film& film) const;
     void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_mean(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_sums(core::Film& film, screenspace::FilterQuality quality, core::CancelToken cancelled);
@@ -100,8 +108,10 @@ class LayerFilter {
     std::vector<Choice> layers_;
     bool has_variance_;
     MakeFilter make_;
+    std::shared_ptr<const screenspace::OidnLibrary> library_;  ///< null: our own filter
     std::unique_ptr<screenspace::FilterFeatures> features_;
-    std::unique_ptr<screenspace::ViewFilter> filter_;                              ///< from the features
+    std::unique_ptr<screenspace::ViewFilter> filter_;  ///< from the features
+    std::unique_ptr<screenspace::FinePixels> fine_;
     screenspace::FilterQuality found_quality_ = screenspace::FilterQuality::full;  ///< of the features
     std::vector<std::vector<float>> variances_;
     double feature_seconds_ = 0.0, filter_seconds_ = 0.0;

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/render/camera_ray.h"
@@ -15,45 +16,33 @@ namespace mote::integrators {
 using namespace core;
 using screenspace::FeatureSample;
 using screenspace::FilterFeatures;
+using screenspace::FineFeatures;
 using screenspace::PixelFrame;
 
 namespace {
 
 constexpr std::uint64_t feature_stream = 0x66696c746572ull;  // apart from the rays of the picture
 
-/// A row of pixels, worked on by one thread.
-class FeatureRow {
+/// Eye rays of a pixel, or of a quarter of one, and the surfaces and media that they see.
+class FeatureRays {
   public:
-    FeatureRow(const Scene& scene, const RenderOptions& options, const FeatureSettings& settings,
-               const PassContext& pass)
+    /// `options`: with the seed of the features; `per_pixel`: 1, or 2 for quarters, whose image is twice as
+    /// large as the film.
+    FeatureRays(const Scene& scene, const RenderOptions& options, const FeatureSettings& settings,
+                const PassContext& pass, int per_pixel = 1)
         : scene_(scene),
           options_(options),
           settings_(settings),
           pass_(pass),
+          per_pixel_(per_pixel),
           samples_(std::size_t(settings.samples)),
-          rays_(std::size_t(settings.samples)) {
-        options_.seed = hash_keys(options.seed, feature_stream);
-    }
+          rays_(std::size_t(settings.samples)) {}
 
-    void fill(int y, FilterFeatures& features) {
-        for (int x = 0; x < options_.width; ++x) {
-            find_samples(x, y);
-            const std::size_t pixel = std::size_t(y) * std::size_t(options_.width) + std::size_t(x);
-            if (!features.set_pixel(pixel, samples_, frame(x, y))) continue;
-            mixed.push_back(std::uint32_t(pixel));
-            mixed_samples.insert(mixed_samples.end(), samples_.begin(), samples_.end());
-        }
-    }
-
-    std::vector<std::uint32_t> mixed;
-    std::vector<FeatureSample> mixed_samples;
-
-  private:
-    void find_samples(int x, int y) {
+    /// Valid until the next call.
+    std::span<const FeatureSample> find(int x, int y) {
         float last = 0.0f, end = 0.0f;
         for (int k = 0; k < settings_.samples; ++k) {
-            const PassContext pass{std::uint32_t(k), pass_.filter, pass_.cancelled};
-            const Ray ray = camera_ray(scene_.camera(), options_, pass, x, y);
+            const Ray ray = eye_ray(std::uint32_t(k), x, y);
             Rng rng(hash_keys(options_.seed, k, pixel_key(options_, x, y)));
             FeatureSample& s = samples_[std::size_t(k)];
             s = look(ray, rng);
@@ -62,6 +51,16 @@ class FeatureRow {
             end = std::fmax(end, s.hit ? s.distance : ray.t_max);
         }
         if (scene_.has_media()) march(last, end);
+        return samples_;
+    }
+
+  private:
+    Ray eye_ray(std::uint32_t k, int x, int y) const {
+        const PassContext pass{k, pass_.filter, pass_.cancelled};
+        if (per_pixel_ == 1) return camera_ray(scene_.camera(), options_, pass, x, y);
+        Sampler sampler = pixel_sampler(options_, pass, x, y);
+        const Vec2 film = (Vec2(float(x), float(y)) + sampler.next_2d()) / float(per_pixel_);
+        return scene_.camera().sample_ray(film, sampler.next_2d());
     }
 
     FeatureSample look(const Ray& ray, Rng& rng) const {
@@ -103,9 +102,41 @@ class FeatureRow {
         }
     }
 
+    const Scene& scene_;
+    const RenderOptions& options_;
+    const FeatureSettings& settings_;
+    const PassContext& pass_;
+    int per_pixel_;
+    std::vector<FeatureSample> samples_;
+    std::vector<Ray> rays_;
+    EyeMarch march_;
+    WalkContext walk_;
+};
+
+/// A row of pixels, worked on by one thread.
+class FeatureRow {
+  public:
+    FeatureRow(const Scene& scene, const RenderOptions& options, const FeatureSettings& settings,
+               const PassContext& pass)
+        : scene_(scene), options_(options), rays_(scene, options, settings, pass) {}
+
+    void fill(int y, FilterFeatures& features) {
+        for (int x = 0; x < options_.width; ++x) {
+            const auto samples = rays_.find(x, y);
+            const std::size_t pixel = std::size_t(y) * std::size_t(options_.width) + std::size_t(x);
+            if (!features.set_pixel(pixel, samples, frame(samples, x, y))) continue;
+            mixed.push_back(std::uint32_t(pixel));
+            mixed_samples.insert(mixed_samples.end(), samples.begin(), samples.end());
+        }
+    }
+
+    std::vector<std::uint32_t> mixed;
+    std::vector<FeatureSample> mixed_samples;
+
+  private:
     /// From the rays through the pixel's middle and one pixel to the right and down, on the tangent plane.
-    PixelFrame frame(int x, int y) const {
-        const auto mean = screenspace::mean_surface(samples_);
+    PixelFrame frame(std::span<const FeatureSample> samples, int x, int y) const {
+        const auto mean = screenspace::mean_surface(samples);
         PixelFrame result;
         if (!mean.hit) return result;
         const Vec2 film(float(x) + 0.5f, float(y) + 0.5f);
@@ -133,14 +164,24 @@ class FeatureRow {
     }
 
     const Scene& scene_;
-    RenderOptions options_;
-    FeatureSettings settings_;
-    PassContext pass_;
-    std::vector<FeatureSample> samples_;
-    std::vector<Ray> rays_;
-    EyeMarch march_;
-    WalkContext walk_;
+    const RenderOptions& options_;
+    FeatureRays rays_;
 };
+
+RenderOptions feature_options(const RenderOptions& options) {
+    RenderOptions own = options;
+    own.seed = hash_keys(options.seed, feature_stream);
+    return own;
+}
+
+void set_quarter(FineFeatures& features, std::size_t quarter, std::span<const FeatureSample> samples) {
+    Rgb reflected(0.0f);
+    Vec3 normal(0.0f);
+    for (const FeatureSample& s : samples) reflected += s.reflected, normal += s.shading_normal;
+    features.reflected[quarter] = reflected / float(samples.size());
+    const float length = glm::length(normal);
+    features.normal[quarter] = length > 0.0f ? normal / length : Vec3(0.0f);
+}
 
 }  // namespace
 
@@ -150,7 +191,8 @@ FilterFeatures find_filter_features(const Scene& scene, const RenderOptions& opt
     const auto filter = film_filter(scene);
     const std::atomic<bool> never{false};
     const PassContext pass{0, *filter, never};
-    std::vector<FeatureRow> rows(std::size_t(options.height), FeatureRow(scene, options, settings, pass));
+    const RenderOptions own = feature_options(options);
+    std::vector<FeatureRow> rows(std::size_t(options.height), FeatureRow(scene, own, settings, pass));
     tbb::parallel_for(0, options.height, [&](int y) {
         if (!options.cancelled.requested()) rows[std::size_t(y)].fill(y, features);
     });
@@ -159,6 +201,27 @@ FilterFeatures find_filter_features(const Scene& scene, const RenderOptions& opt
         features.mixed.insert(features.mixed.end(), row.mixed.begin(), row.mixed.end());
         features.samples.insert(features.samples.end(), row.mixed_samples.begin(), row.mixed_samples.end());
     }
+    return features;
+}
+
+FineFeatures find_fine_features(const Scene& scene, const RenderOptions& options,
+                                const FeatureSettings& settings) {
+    RenderOptions own = feature_options(options);
+    own.width *= 2, own.height *= 2;
+    const std::size_t quarters = std::size_t(own.width) * std::size_t(own.height);
+    FineFeatures features{own.width, own.height, std::vector<Rgb>(quarters), std::vector<Vec3>(quarters),
+                          scene.camera().traits().delta_position};
+    const FeatureSettings of_quarter{std::max(1, settings.samples / 4), 2.0f * settings.voxels};
+    const auto filter = film_filter(scene);
+    const std::atomic<bool> never{false};
+    const PassContext pass{0, *filter, never};
+    tbb::parallel_for(0, own.height, [&](int y) {
+        if (options.cancelled.requested()) return;
+        FeatureRays rays(scene, own, of_quarter, pass, 2);
+        for (int x = 0; x < own.width; ++x)
+            set_quarter(features, std::size_t(y) * std::size_t(own.width) + std::size_t(x), rays.find(x, y));
+    });
+    options.cancelled.check();
     return features;
 }
 

@@ -7,6 +7,7 @@
 #include "core/render/integrator.h"
 #include "core/scene/scene.h"
 #include "screenspace/layer_filter/filter_features.h"
+#include "screenspace/layer_filter/fine_pixels.h"
 
 namespace mote::integrators {
 
@@ -18,5 +19,10 @@ struct FeatureSettings {
 /// Size, seed and sampler are those of `options`. The same for any number of threads. Throws Cancelled.
 screenspace::FilterFeatures find_filter_features(const core::Scene& scene, const core::RenderOptions& options,
                                                  const FeatureSettings& settings);
+
+/// Features of quarters of pixels, by settings.samples / 4 eye rays each, one at least, and steps of twice
+/// as many voxels.
+screenspace::FineFeatures find_fine_features(const core::Scene& scene, const core::RenderOptions& options,
+                                             const FeatureSettings& settings);
 
 }  // namespace mote::integrators

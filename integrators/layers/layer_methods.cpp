@@ -124,6 +124,13 @@ LayerChoice fill_layers(const Scene& scene, std::vector<LayerMethod> methods) {
     return choice;
 }
 
+void keep_fine_light(LayerChoice& choice) {
+    constexpr TransportSet of_surfaces = Transport::direct | Transport::indirect;
+    for (Layer& layer : choice.layers)
+        layer.fine = !layer.transport.empty() && of_surfaces.contains(layer.transport) &&
+                     choice.methods[layer.part].integrator->renders_columns();
+}
+
 TransportSet LayerChoice::unfilled(bool media) const {
     TransportSet cells = TransportSet::all(media);
     for (const LayerMethod& method : methods) cells = cells - method.cells;

@@ -41,6 +41,10 @@ std::vector<LayerMethod> choose_layer_methods(const core::Scene& scene,
                                               const core::Requirements& requirements,
                                               const EyePathLimits& limits, FarLight far_light);
 
+/// Lets films keep the light that surfaces scatter at twice the resolution (Layer::fine), where pixels of its
+/// method are independent of each other.
+void keep_fine_light(LayerChoice& choice);
+
 /// Finds the cells and layers that each method fills in this scene. Throws InputError, with its place, for a
 /// cell that the method cannot fill, and where two methods fill one cell.
 LayerChoice fill_layers(const core::Scene& scene, std::vector<LayerMethod> methods);

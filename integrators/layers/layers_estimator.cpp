@@ -85,10 +85,13 @@ class LayersEstimator final : public Estimator {
             const LayerMethod& method = choice.methods[i];
             RenderOptions own = options;
             own.seed = seed_of_part(options.seed, i), own.cells = method.cells;
-            parts_.push_back({method.integrator->prepare(scene, own),
-                              method.kept,
-                              PassImage(options.width, options.height, method.layers.size()),
-                              {}});
+            parts_.push_back(
+                {method.integrator->prepare(scene, own),
+                 method.kept,
+                 PassImage(options.width, options.height, method.layers.size()),
+                 std::ranges::any_of(choice.layers,
+                                     [&](const Layer& layer) { return layer.part == i && layer.fine; }),
+                 {}});
             if (method.integrator->renders_columns()) parts_.back().control.emplace(scene, own, method);
             const auto layers =
                 std::count_if(filter_.layers().begin(), filter_.layers().end(),
@@ -112,9 +115,11 @@ class LayersEstimator final : public Estimator {
     bool pass(const PassContext& context, PassImage& image) override {
         Part& part = parts_.at(context.part);
         part.image.clear();
+        if (part.fine && !part.image.has_places()) part.image.keep_places();
         if (!part.estimator->pass({context.index, context.filter, context.cancelled}, part.image))
             return false;
         for (std::size_t i = 0; i < part.kept.size(); ++i) image.swap_layer(i, part.image, part.kept[i]);
+        if (part.fine) image.swap_places(part.image);
         return true;
     }
 
@@ -148,6 +153,7 @@ class LayersEstimator final : public Estimator {
         std::unique_ptr<Estimator> estimator;
         std::vector<std::size_t> kept;  ///< of its layers
         PassImage image;                ///< with all its layers
+        bool fine;                      ///< films may keep some of them at twice the resolution
         std::optional<ControlOfPart> control;
     };
     std::vector<Part> parts_;

@@ -28,6 +28,9 @@ screenspace::LayerKind kind_of(const Layer& layer) {
                                                    : screenspace::LayerKind::surface;
 }
 
+/// Larger pictures are denoised as they are: twice the resolution takes 440 bytes a pixel.
+constexpr std::int64_t max_fine_pixels = 1 << 21;
+
 /// True for the layers that our own filter smooths. Indirect light is smooth but where surfaces and media are
 /// not, which features show; so is light of large lights scattered in media, and shafts of others show as
 /// soon as noise is below them.
@@ -150,6 +153,9 @@ class MoteLayers final : public Integrator {
             layer.squares =
                 !layer.auxiliary &&
                 (filters_ == FilterChoice::own ? is_smooth(layer) : filters_ != FilterChoice::none);
+        const bool by_library = filters_ == FilterChoice::automatic || filters_ == FilterChoice::oidn;
+        const FilmSettings& film = scene.film();
+        if (by_library && std::int64_t(film.width) * film.height <= max_fine_pixels) keep_fine_light(choice);
         return choice;
     }
     /// The library takes all layers, our own filter the smooth ones.

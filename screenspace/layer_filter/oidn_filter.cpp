@@ -40,6 +40,7 @@ class OidnFilter final : public ViewFilter {
         reflected_ = clean(Feature::albedo, between_0_and_1(f.reflected));
         scattering_ = clean(Feature::albedo, between_0_and_1(f.scattering));
         normal_ = clean(Feature::normal, f.shading_normal);
+        no_normal_.assign(f.pixels(), Rgb(0.0f));
     }
 
     FilteredLayer filtered(const LayerToFilter& layer, CancelToken cancelled) override {
@@ -49,15 +50,14 @@ class OidnFilter final : public ViewFilter {
         std::vector<Rgb> colour = result.mean;
         for (Rgb& c : colour)
             if (!is_finite(c)) c = Rgb(0.0f);
-        const std::vector<Rgb>& albedo = layer.kind == LayerKind::surface ? reflected_ : scattering_;
+        const bool surface = layer.kind == LayerKind::surface;
+        const std::vector<Rgb>&albedo = surface ? reflected_ : scattering_,
+              &normal = surface ? normal_ : no_normal_;
         const auto quality = layer.quality == FilterQuality::full ? OidnLibrary::Quality::high
                                                                   : OidnLibrary::Quality::balanced;
-        const std::vector<Rgb> denoised = blend_by_variance(
-            width_, height_, by_network({width_, height_, colour, albedo, normal_, clean_features_, quality}),
-            colour, layer.variance, blend_radius, blend_deviations);
-        for (std::size_t i = 0; i < denoised.size(); ++i)
-            if (is_finite(layer.mean[i]) && is_finite(denoised[i]))
-                result.mean[i] = glm::max(denoised[i], glm::min(layer.mean[i], Rgb(0.0f)));
+        result.mean = mixed_with_mean(
+            width_, height_, by_network({width_, height_, colour, albedo, normal, clean_features_, quality}),
+            layer);
         return result;
     }
     double full_per_preview() const override { return OidnLibrary::high_per_balanced; }
@@ -75,12 +75,23 @@ class OidnFilter final : public ViewFilter {
     int width_, height_;
     bool clean_features_;
     /// Guides of the library: light that surfaces reflect and media scatter towards the eye, and normals.
-    std::vector<Rgb> reflected_, scattering_, normal_;
+    std::vector<Rgb> reflected_, scattering_, normal_, no_normal_;
     std::optional<OidnLibrary::Series> series_;
     OidnLibrary::Quality quality_ = OidnLibrary::Quality::high;
 };
 
 }  // namespace
+
+std::vector<Rgb> mixed_with_mean(int width, int height, std::span<const Rgb> denoised,
+                                 const LayerToFilter& layer) {
+    std::vector<Rgb> result(layer.mean.begin(), layer.mean.end());
+    const std::vector<Rgb> mixed = blend_by_variance(width, height, denoised, layer.mean, layer.variance,
+                                                     blend_radius, blend_deviations);
+    for (std::size_t i = 0; i < mixed.size(); ++i)
+        if (is_finite(layer.mean[i]) && is_finite(mixed[i]))
+            result[i] = glm::max(mixed[i], glm::min(layer.mean[i], Rgb(0.0f)));
+    return result;
+}
 
 std::unique_ptr<ViewFilter> make_oidn_filter(const FilterFeatures& features,
                                              std::shared_ptr<const OidnLibrary> library,

@@ -25,6 +25,11 @@ class ViewFilter {
 std::unique_ptr<ViewFilter> make_own_filter(const FilterFeatures& features,
                                             const LayerFilterSettings& settings);
 
+/// A denoised layer, mixed with its noisy mean as far as that shows more than noise (variance_blend.h).
+/// Nowhere negative where the mean is not; pixels of either that are not finite are those of the mean.
+std::vector<core::Rgb> mixed_with_mean(int width, int height, std::span<const core::Rgb> denoised,
+                                       const LayerToFilter& layer);
+
 /// OpenImageDenoise, combined with the noisy mean as far as that shows more than noise (variance_blend.h):
 /// with many passes the picture converges to the mean. At full `quality` the features are denoised first, so
 /// that lenses and edges leave no noise in them; for a preview the network takes them for noisy. A

@@ -264,10 +264,83 @@ TEST_CASE(
     };
     // Surfaces, light scattered once, and light scattered more often.
     CHECK(runs(film) == of(3, "quality 0, noisy features\n"));
+    add_work(50.0);
+    CHECK(runs(film) == of(5, "quality 0, noisy features\n"));
     add_work(100.0);
-    CHECK(runs(film) == of(3, "quality 0\n"));
-    add_work(1000.0);
     CHECK(runs(film) == of(5, "quality 0\n"));
+    add_work(1000.0);
+    CHECK(runs(film) == of(5, "quality 0\n"));  // it has no quarters
+}
+
+TEST_CASE("After much work and sixteen passes quarters of pixels are denoised", "[layer_filter][fine]") {
+    const auto scene = scene_from(box(grey, ""), 16);
+    const TemporaryFolder folder;
+    const Environment stand_in("MOTE_OIDN", MOTE_BINARY_DIR "/stand_ins"), sharp("MOTE_STAND_IN_SHARP", "1"),
+        log("MOTE_STAND_IN_LOG", folder.file("log"));
+    Layer direct{"direct", "", false, true, "", Transport::direct};
+    direct.fine = true;
+    struct Shown {
+        std::string log;
+        std::vector<Rgb> passes, picture;
+    };
+    const auto shown = [&](std::uint32_t passes, double work, bool noise,
+                           PassSplit split = PassSplit::whole) {
+        Film film(16, 16, {direct}, false, split);
+        for (std::uint32_t pass = 0; pass < passes; ++pass) {
+            PassImage image(16, 16, 1);
+            image.keep_places();
+            for (int y = 0; y < 16; ++y)
+                for (int x = 0; x < 16; ++x) {
+                    image.at(0, x, y) = Rgb(noise ? float(hash_keys(pass, x, y) % 1000) : 3.0f);
+                    image.place(
+                        x, y,
+                        Vec2(float(x), float(y)) + 0.25f + 0.5f * Vec2(float(pass % 2), float(pass / 2 % 2)));
+                }
+            film.add_pass(image, 0, work * 256.0 / double(passes));
+        }
+        std::ofstream(folder.file("log"));
+        const std::vector<Rgb> before = film.mean(0);
+        LayerFilter(*scene, options_of(*scene), FeatureSettings(), std::make_shared<const OidnLibrary>(),
+                    {{0, LayerKind::surface}})
+            .apply(film);
+        std::ifstream file(folder.file("log"));
+        return Shown{std::string(std::istreambuf_iterator<char>(file), {}), before, film.mean(0)};
+    };
+    CHECK(shown(16, 301.0, true).log == "quality 0, quarters\n");
+    CHECK(shown(16, 299.0, true).log == "quality 0\n");
+    CHECK(shown(15, 301.0, true).log == "quality 0\n");
+    CHECK(shown(16, 301.0, true, PassSplit::halves).log == "quality 0\nquality 0\n");
+    const Shown noisy = shown(64, 301.0, true), even = shown(64, 301.0, false);
+    CHECK(even.picture == even.passes);  // without noise there is nothing to denoise
+    CHECK(even.log.empty());
+    CHECK(noisy.picture != noisy.passes);
+}
+
+TEST_CASE("Features of quarters are those of pixels, seen closer", "[layer_filter][fine]") {
+    for (const std::string& medium : {std::string(), coloured_fog}) {
+        const auto scene = scene_from(box(grey, medium), 24);
+        const FineFeatures fine = find_fine_features(*scene, options_of(*scene), {64, 1.0f});
+        const FilterFeatures coarse = features_of(*scene, 64);
+        REQUIRE(fine.width == 48);
+        REQUIRE(fine.reflected.size() == 4 * coarse.pixels());
+        CHECK(fine.sharp);
+        // Two of 64 rays may fall beyond an edge that none of the pixel's own have met. Media are marched
+        // along the first ray of each, which is another one: on the mean they are alike.
+        const float tolerance = medium.empty() ? 2.0f / 64.0f * glm::length(Rgb(0.6f, 0.5f, 0.4f)) : 0.2f;
+        Vec3d difference(0.0);
+        double pixels = 0.0;
+        for (std::size_t p = 0; p < coarse.pixels(); ++p) {
+            if (coarse.kind[p] != PixelKind::single) continue;
+            const std::size_t q = p / 24 * 2 * 48 + p % 24 * 2;
+            const Rgb mean = 0.25f * (fine.reflected[q] + fine.reflected[q + 1] + fine.reflected[q + 48] +
+                                      fine.reflected[q + 49]);
+            CHECK(glm::length(mean - coarse.reflected[p]) < tolerance);
+            CHECK(glm::length(fine.normal[q] - coarse.shading_normal[p]) < 1e-3f);
+            difference += Vec3d(mean - coarse.reflected[p]), pixels += 1.0;
+        }
+        CHECK(pixels > 300.0);
+        CHECK(glm::length(difference / pixels) < 2e-3);
+    }
 }
 
 TEST_CASE("A preview by our own filter is its picture", "[layer_filter]") {

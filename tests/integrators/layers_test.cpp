@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/film/film.h"
+#include "core/render/pass_runner.h"
 #include "core/render/render_driver.h"
 #include "integrators/layers/pass_schedule.h"
 #include "tests/integrators/test_scenes.h"
@@ -374,4 +375,44 @@ TEST_CASE("the filter is the library where it is installed, our own elsewhere, a
     CHECK(oidn.picture != oidn.passes);
     CHECK(oidn.passes == none.passes);  // passes are shared out by the noise before filters
     CHECK(oidn.noise == none.noise);    // what the library leaves is not known
+}
+
+TEST_CASE("quarters of pixels have the light of the samples that fell into them", "[mote_layers][fine]") {
+    const Environment off("MOTE_OIDN", "off");  // films are the same with the library and without
+    struct Case {
+        std::string medium, parameters;
+        std::vector<std::string> fine;
+    };
+    const std::vector<std::string> both = {"direct", "indirect"};
+    for (const Case& c : {Case{"", "", both}, Case{fog("0.5, 0.6, 0.8", ""), "", both},
+                          Case{"", "<string name='far_light' value='lights'/>", {"direct"}},
+                          Case{"", "<string name='filter' value='none'/>", {}},
+                          Case{"", "<string name='filter' value='own'/>", {}}}) {
+        CAPTURE(c.medium, c.parameters);
+        const auto scene = scene_from(box(grey, c.medium), 16);
+        const auto integrator = layers_of(c.parameters);
+        Film film(16, 16, film_layers(*scene, *integrator, {}));
+        PassRunner runner(*scene, *integrator, 5, film);
+        const std::atomic<bool> never{false};
+        for (int i = 0; i < 24; ++i) REQUIRE(runner.run_pass(never));
+        std::vector<std::string> found;
+        for (std::size_t l = 0; l < film.layers().size(); ++l) {
+            if (!film.layers()[l].fine) continue;
+            found.push_back(film.layers()[l].name);
+            // By a box filter a pixel has no sample of its neighbours: its quarters have all of its own.
+            const FineSums& sums = film.fine_sums(l);
+            const std::vector<Rgb> fine = sums.mean(), mean = film.mean(l);
+            const std::uint32_t passes = film.pass_count(film.layers()[l].part);
+            for (std::size_t p = 0; p < mean.size(); ++p) {
+                const std::size_t q = p / 16 * 2 * 32 + p % 16 * 2;
+                Vec3d light(0.0);
+                double samples = 0.0;
+                for (const std::size_t i : {q, q + 1, q + 32, q + 33})
+                    light += double(sums.counts()[i]) * Vec3d(fine[i]), samples += double(sums.counts()[i]);
+                REQUIRE(samples == double(passes));
+                REQUIRE(glm::length(Rgb(light / samples) - mean[p]) <= 1e-5f * glm::length(mean[p]));
+            }
+        }
+        CHECK(found == c.fine);
+    }
 }

@@ -2,7 +2,7 @@
 // colour with both features, denoised before (above 0, or above -1 + 1 for normals) where they are said to be
 // clean, twice itself; without any three times; with anything else, or without the option for HDR, an error.
 // MOTE_STAND_IN_FAILS: the error of every run. MOTE_STAND_IN_LOG: a file that gets a line for each colour
-// that was denoised.
+// that was denoised. MOTE_STAND_IN_SHARP: normals are clean as they are.
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -52,7 +52,8 @@ std::string rule(const Filter& f, std::string& input, float& factor, float& more
     const bool clean =
         denoised_before(f.images.at("albedo"), 1.0f) && denoised_before(f.images.at("normal"), 0.0f);
     if (!f.flags.count("cleanAux")) return clean ? "clean features that are said to be noisy" : "";
-    return denoised_before(f.images.at("albedo"), 0.0f) && denoised_before(f.images.at("normal"), 0.0f)
+    const float least = std::getenv("MOTE_STAND_IN_SHARP") ? -1.0f : 0.0f;
+    return denoised_before(f.images.at("albedo"), 0.0f) && denoised_before(f.images.at("normal"), least)
                ? ""
                : "noisy features";
 }
@@ -101,7 +102,8 @@ void oidnExecuteFilter(void* filter) {
     if (!f.device->error.empty()) return;
     if (const char* log = std::getenv("MOTE_STAND_IN_LOG"); log && input == "color")
         std::ofstream(log, std::ios::app)
-            << "quality " << f.quality << (f.flags.count("cleanAux") ? "" : ", noisy features") << '\n';
+            << "quality " << f.quality << (f.flags.count("cleanAux") ? "" : ", noisy features")
+            << (f.images.at("color").width > 16 ? ", quarters" : "") << '\n';
     if (const char* light = std::getenv("MOTE_STAND_IN_LIGHT"); light && input == "color")
         more += std::strtof(light, nullptr);
     const Image &from = f.images.at(input), &to = f.images.at("output");

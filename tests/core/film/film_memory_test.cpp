@@ -21,7 +21,7 @@ std::vector<Layer> layers(bool auxiliary, std::size_t parts, bool squares = fals
     std::vector<Layer> list;
     for (std::size_t i = 0; i < 3; ++i) {
         list.push_back({"light" + std::to_string(i), "", false, squares});
-        list.back().part = i % parts;
+        list.back().part = i % parts, list.back().fine = i == 1;  // counts in films of whole passes
     }
     for (int i = 0; auxiliary && i < 4; ++i) list.push_back({"N" + std::to_string(i), "", true, true});
     return list;
