@@ -38,6 +38,17 @@ double work_of_pixel(const Film& film) {
     return work / double(film.pixels());
 }
 
+bool shows_shafts(const Film& film, const LayerFilter::Choice& choice) {
+    return choice.kind == screenspace::LayerKind::volume &&
+           film.layers()[choice.layer].transport != Transport::multiple_scattering;
+}
+
+screenspace::LayerToFilter to_filter(const Film& film, const LayerFilter::Choice& choice,
+                                     const LayerOfPasses& layer) {
+    return {layer.mean, layer.variance, choice.kind, screenspace::FilterQuality::full,
+            shows_shafts(film, choice)};
+}
+
 LayerOfPasses of_half(const Film& film, std::size_t layer, int half) {
     return {film.half_mean(layer, half), film.half_variance_of_mean(layer, half)};
 }
@@ -150,8 +161,7 @@ void LayerFilter::apply_to_halves(Film& film, const Choice& choice, CancelToken 
     std::array<std::vector<Rgb>, 2> shown;
     for (const int half : {0, 1}) {
         const LayerOfPasses layer = of_half(film, choice.layer, half);
-        shown[std::size_t(half)] =
-            filter_->filtered({layer.mean, layer.variance, choice.kind}, cancelled).mean;
+        shown[std::size_t(half)] = filter_->filtered(to_filter(film, choice, layer), cancelled).mean;
     }
     film.set_halves(choice.layer, std::move(shown));
 }
@@ -218,13 +228,15 @@ double LayerFilter::runs(const Film& film) const {
     const double halves = has_halves(film) ? 2.0 : 1.0;
     if (joins_layers(film)) return double(kinds(film).size()) * halves;
     double runs = 0.0;
-    for (const Choice& choice : layers_) runs += is_fine(film, choice.layer) ? runs_of_fine : halves;
+    for (const Choice& choice : layers_)
+        runs += is_fine(film, choice.layer) ? runs_of_fine
+                                            : (library_ && shows_shafts(film, choice) ? 2.0 : 1.0) * halves;
     return runs;
 }
 
 void LayerFilter::apply_to_mean(Film& film, const Choice& choice, CancelToken cancelled) {
     const LayerOfPasses layer = of_passes(film, choice.layer);
-    auto filtered = filter_->filtered({layer.mean, layer.variance, choice.kind}, cancelled);
+    auto filtered = filter_->filtered(to_filter(film, choice, layer), cancelled);
     film.set_mean(choice.layer, filtered.mean, filtered.variance);
     variances_.push_back(std::move(filtered.variance));
 }
@@ -247,7 +259,7 @@ std::vector<LayerFilter::Kind> LayerFilter::kinds(const Film& film) const {
     // as one they have 1.4 times the squared error (fog, 4 passes).
     const auto group_of = [&](const Choice& choice) {
         if (choice.kind == screenspace::LayerKind::surface) return 0;
-        return film.layers()[choice.layer].transport == Transport::multiple_scattering ? 2 : 1;
+        return shows_shafts(film, choice) ? 1 : 2;
     };
     for (const int group : {0, 1, 2}) {
         Kind found{group == 0 ? screenspace::LayerKind::surface : screenspace::LayerKind::volume, {}};

@@ -51,13 +51,19 @@ class OidnFilter final : public ViewFilter {
         for (Rgb& c : colour)
             if (!is_finite(c)) c = Rgb(0.0f);
         const bool surface = layer.kind == LayerKind::surface;
-        const std::vector<Rgb>&albedo = surface ? reflected_ : scattering_,
-              &normal = surface ? normal_ : no_normal_;
+        const std::vector<Rgb>& albedo = surface ? reflected_ : scattering_;
         const auto quality = layer.quality == FilterQuality::full ? OidnLibrary::Quality::high
                                                                   : OidnLibrary::Quality::balanced;
-        result.mean = mixed_with_mean(
-            width_, height_, by_network({width_, height_, colour, albedo, normal, clean_features_, quality}),
-            layer);
+        const auto by_normals = [&](const std::vector<Rgb>& normal) {
+            return by_network({width_, height_, colour, albedo, normal, clean_features_, quality});
+        };
+        // Normals of surfaces behind a medium mislead; but before a grille they show where shafts begin.
+        std::vector<Rgb> denoised = by_normals(surface ? normal_ : no_normal_);
+        if (layer.shafts && layer.quality == FilterQuality::full) {
+            const std::vector<Rgb> other = by_normals(normal_);
+            for (std::size_t p = 0; p < denoised.size(); ++p) denoised[p] = 0.5f * (denoised[p] + other[p]);
+        }
+        result.mean = mixed_with_mean(width_, height_, denoised, layer);
         return result;
     }
     double full_per_preview() const override { return OidnLibrary::high_per_balanced; }

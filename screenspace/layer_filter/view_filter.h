@@ -32,7 +32,8 @@ std::vector<core::Rgb> mixed_with_mean(int width, int height, std::span<const co
 
 /// OpenImageDenoise, combined with the noisy mean as far as that shows more than noise (variance_blend.h):
 /// with many passes the picture converges to the mean. At full `quality` the features are denoised first, so
-/// that lenses and edges leave no noise in them; for a preview the network takes them for noisy. A
+/// that lenses and edges leave no noise in them; for a preview the network takes them for noisy. Light of
+/// media is denoised without normals, shafts as the mean of that and of a run with them. A
 /// layer without variance stays as it is. Throws InputError, here and from filtered(), where the library
 /// fails.
 std::unique_ptr<ViewFilter> make_oidn_filter(const FilterFeatures& features,

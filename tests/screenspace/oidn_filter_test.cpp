@@ -1,6 +1,8 @@
 // OpenImageDenoise as a filter of layers: with the stand-in (tests/stand_ins), which doubles a colour whose
 // features were denoised before.
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "core/objects/error.h"
@@ -8,6 +10,7 @@
 #include "tests/screenspace/layer_filter_views.h"
 #include "tests/support/catch.h"
 #include "tests/support/environment.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace mote::core;
 using namespace mote::screenspace;
@@ -48,6 +51,27 @@ TEST_CASE("the library's layer is taken as far as noise explains the difference"
     // Eq. (2) of variance_blend.h over 11 x 11 pixels, for a difference that is the same everywhere.
     const float difference = average(mean[200] * mean[200]);
     CHECK(std::fabs(share(0.25f * difference) - 0.25f * (1.0f + 2.0f * std::sqrt(2.0f) / 11.0f)) < 1e-3f);
+}
+
+TEST_CASE("light of media is denoised without normals, shafts with and without", "[oidn_filter]") {
+    const FilterView view = wall();
+    const std::vector<Rgb>& mean = view.truth;
+    const TemporaryFolder folder;
+    const Environment named("MOTE_OIDN", stand_in), log("MOTE_STAND_IN_LOG", folder.file("log"));
+    const std::vector<Rgb> variance(mean.size(), Rgb(1e12f));
+    const auto runs = [&](LayerKind kind, bool shafts, FilterQuality quality) {
+        std::ofstream(folder.file("log"));
+        const auto filter = make_oidn_filter(view.features, std::make_shared<const OidnLibrary>());
+        const Rgb shown = filter->filtered({mean, variance, kind, quality, shafts}, {}).mean[200];
+        CHECK(shown.y == Approx((quality == FilterQuality::full ? 2.0f : 4.0f) * mean[200].y));
+        std::ifstream file(folder.file("log"));
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    const std::string with = "quality 0\n", without = "quality 0, no normals\n";
+    CHECK(runs(LayerKind::surface, false, FilterQuality::full) == with);
+    CHECK(runs(LayerKind::volume, false, FilterQuality::full) == without);
+    CHECK(runs(LayerKind::volume, true, FilterQuality::full) == without + with);
+    CHECK(runs(LayerKind::volume, true, FilterQuality::preview) == "quality 5, no normals\n");
 }
 
 TEST_CASE("a filtered layer is finite and nowhere negative where the layer is not", "[oidn_filter]") {

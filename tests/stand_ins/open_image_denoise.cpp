@@ -35,6 +35,12 @@ bool denoised_before(const Image& feature, float least) {
     return true;
 }
 
+bool is_zero(const Image& feature) {
+    for (std::size_t i = 0; i < feature.numbers(); ++i)
+        if (feature.pixels[i] != 0.0f) return false;
+    return true;
+}
+
 /// Rule of the stand-in: output = factor * input + more. Returns "" or an error.
 std::string rule(const Filter& f, std::string& input, float& factor, float& more) {
     if (!f.committed || !f.device->committed || !f.has("output")) return "not committed";
@@ -103,7 +109,8 @@ void oidnExecuteFilter(void* filter) {
     if (const char* log = std::getenv("MOTE_STAND_IN_LOG"); log && input == "color")
         std::ofstream(log, std::ios::app)
             << "quality " << f.quality << (f.flags.count("cleanAux") ? "" : ", noisy features")
-            << (f.images.at("color").width > 16 ? ", quarters" : "") << '\n';
+            << (f.has("normal") && is_zero(f.images.at("normal")) ? ", no normals" : "")
+            << (f.images.at("color").width > 24 ? ", quarters" : "") << '\n';
     if (const char* light = std::getenv("MOTE_STAND_IN_LIGHT"); light && input == "color")
         more += std::strtof(light, nullptr);
     const Image &from = f.images.at(input), &to = f.images.at("output");
