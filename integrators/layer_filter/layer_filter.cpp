@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include "core/render/cpu_clock.h"
 #include "core/render/pass_runner.h"
@@ -28,8 +29,12 @@ FeatureSettings rough(const FeatureSettings& s) { return {std::min(s.samples, 4)
 /// as long as twelve runs, and lower the error by up to a sixth at 640 x 400, by up to a quarter at half
 /// that size.
 constexpr double work_of_fine = 300.0;
-/// With fewer, many quarters have no sample, and OpenImageDenoise takes what fills them for detail.
-constexpr std::uint32_t passes_of_fine = 16;
+/// With fewer, noise of quarters costs what their detail gains; and with a few, many have no sample, and
+/// OpenImageDenoise takes what fills them for detail.
+constexpr std::uint32_t passes_of_fine = 32;
+/// Time of full features over that of rough ones (5 to 8), and of those of quarters over full ones (1
+/// to 1.5).
+constexpr double full_per_rough = 6.5, quarters_per_full = 1.4;
 constexpr double runs_of_fine = 4.0;  ///< time of a layer's quarters over that of its pixels
 
 double work_of_pixel(const Film& film) {
@@ -137,11 +142,12 @@ LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const
 }
 
 void LayerFilter::find_features(const Film& film, CancelToken cancelled) {
-    const bool full = has_variance_ || work_of_pixel(film) >= work_of_features;
+    const bool full = takes_full_features(film);
     const auto quality = full ? screenspace::FilterQuality::full : screenspace::FilterQuality::preview;
     if (filter_ && quality == found_quality_) return;
     options_.cancelled = cancelled;
-    const Stopwatch stopwatch(feature_seconds_);
+    feature_seconds_ += std::exchange(last_feature_seconds_, 0.0);
+    const Stopwatch stopwatch(last_feature_seconds_);
     filter_.reset();
     features_ = std::make_unique<screenspace::FilterFeatures>(
         find_filter_features(scene_, options_, full ? feature_settings_ : rough(feature_settings_)));
@@ -205,6 +211,16 @@ bool LayerFilter::is_fine(const Film& film, std::size_t layer) const {
 bool LayerFilter::needs_quarters(const Film& film) const {
     return !fine_ && !joins_layers(film) &&
            std::ranges::any_of(layers_, [&](const Choice& choice) { return is_fine(film, choice.layer); });
+}
+
+bool LayerFilter::takes_full_features(const Film& film) const {
+    return has_variance_ || work_of_pixel(film) >= work_of_features;
+}
+
+double LayerFilter::seconds_to_find_features(const Film& film) const {
+    const bool finds_full = takes_full_features(film) && found_quality_ != screenspace::FilterQuality::full;
+    const double full = (finds_full ? full_per_rough : 1.0) * last_feature_seconds_;
+    return (finds_full ? full : 0.0) + (needs_quarters(film) ? quarters_per_full * full : 0.0);
 }
 
 void LayerFilter::find_quarters(const Film& film, CancelToken cancelled) {
@@ -317,7 +333,7 @@ void LayerFilter::apply_to_sum(Film& film, const Kind& kind, screenspace::Filter
 
 void LayerFilter::add_statistics(Statistics& statistics) const {
     if (layers_.empty()) return;
-    statistics.seconds["filter_features"] = feature_seconds_;
+    statistics.seconds["filter_features"] = feature_seconds_ + last_feature_seconds_;
     statistics.seconds["filter"] = filter_seconds_;
 }
 

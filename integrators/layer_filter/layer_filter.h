@@ -54,10 +54,9 @@ class LayerFilter {
     /// apply() for a preview: OpenImageDenoise takes sums always, and quickly. Returns true where it is the
     /// same: for our own filter.
     bool apply_for_preview(core::Film& film, core::CancelToken cancelled = {});
-    /// Wall time of apply(), by that of the last call of either and of features so far [s].
+    /// Wall time of apply(), by that of the last call of either [s].
     double seconds_to_apply(const core::Film& film) const {
-        const double features = needs_quarters(film) ? feature_seconds_ : 0.0;
-        return features + seconds_per_run_ * runs(film);
+        return seconds_to_find_features(film) + seconds_per_run_ * runs(film);
     }
 
     const std::vector<Choice>& layers() const { return layers_; }
@@ -91,7 +90,10 @@ class LayerFilter {
     void find_features(const core::Film& film, core::CancelToken cancelled);
     /// True for a layer that is denoised at twice the resolution, in films of whole passes.
     bool is_fine(const core::Film& film, std::size_t layer) const;
-    bool needs_quarters(const core::Film& film) const;  ///< whose features are not found yet
+    /// True where layers are, and the features of quarters are not found yet.
+    bool needs_quarters(const core::Film& film) const;
+    bool takes_full_features(const core::Film& film) const;
+    double seconds_to_find_features(const core::Film& film) const;
     void find_quarters(const core::Film& film, core::CancelToken cancelled);
     void apply_to_fine(core::Film& film, std::size_t layer, core::CancelToken cancelled);
     /// Time of apply() in that of one layer.
@@ -115,7 +117,8 @@ class LayerFilter {
     screenspace::FilterQuality found_quality_ = screenspace::FilterQuality::full;  ///< of the features
     std::vector<std::vector<float>> variances_;
     double feature_seconds_ = 0.0, filter_seconds_ = 0.0;
-    double seconds_per_run_ = 0.0;  ///< of the filter at full quality, by the last call
+    double last_feature_seconds_ = 0.0;  ///< of the features that there are, without those of quarters
+    double seconds_per_run_ = 0.0;       ///< of the filter at full quality, by the last call
 };
 
 }  // namespace mote::integrators

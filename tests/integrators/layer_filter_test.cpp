@@ -277,7 +277,7 @@ TEST_CASE(
     CHECK(runs(film) == each("quality 0"));  // it has no quarters
 }
 
-TEST_CASE("After much work and sixteen passes quarters of pixels are denoised", "[layer_filter][fine]") {
+TEST_CASE("After much work and 32 passes quarters of pixels are denoised", "[layer_filter][fine]") {
     const auto scene = scene_from(box(grey, ""), 16);
     const TemporaryFolder folder;
     const Environment stand_in("MOTE_OIDN", MOTE_BINARY_DIR "/stand_ins"), sharp("MOTE_STAND_IN_SHARP", "1"),
@@ -311,10 +311,10 @@ TEST_CASE("After much work and sixteen passes quarters of pixels are denoised", 
         std::ifstream file(folder.file("log"));
         return Shown{std::string(std::istreambuf_iterator<char>(file), {}), before, film.mean(0)};
     };
-    CHECK(shown(16, 301.0, true).log == "quality 0, quarters\n");
-    CHECK(shown(16, 299.0, true).log == "quality 0\n");
-    CHECK(shown(15, 301.0, true).log == "quality 0\n");
-    CHECK(shown(16, 301.0, true, PassSplit::halves).log == "quality 0\nquality 0\n");
+    CHECK(shown(32, 301.0, true).log == "quality 0, quarters\n");
+    CHECK(shown(32, 299.0, true).log == "quality 0\n");
+    CHECK(shown(31, 301.0, true).log == "quality 0\n");
+    CHECK(shown(32, 301.0, true, PassSplit::halves).log == "quality 0\nquality 0\n");
     const Shown noisy = shown(64, 301.0, true), even = shown(64, 301.0, false);
     CHECK(even.picture == even.passes);  // without noise there is nothing to denoise
     CHECK(even.log.empty());
