@@ -8,6 +8,7 @@
 // own size.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -38,6 +39,10 @@ class ExactSums {
         auto low = std::int64_t(rest >= 12 ? below << (rest - 12) : below >> (12 - rest));
         if (std::int64_t(bits) < 0) high = -high, low = -low;
         add_digits(i, place, high, low);
+    }
+    /// True where any term was not zero.
+    bool any() const {
+        return std::any_of(place_.begin(), place_.end(), [](std::uint8_t place) { return place > 0; });
     }
     /// Adds sums of as many numbers: the same as adding all their terms.
     void add(std::size_t i, const ExactSums& other) {

@@ -54,12 +54,6 @@ void FineSums::add(const FineSums& more) {
     });
 }
 
-bool FineSums::has_light() const {
-    for (std::size_t i = 0; i < light_.size(); ++i)
-        if (light_.at(i) != 0.0) return true;
-    return false;
-}
-
 std::vector<Rgb> FineSums::mean() const {
     std::vector<Rgb> result(counts_.size(), Rgb(0.0f));
     const auto sum = [&](std::size_t q) {

@@ -28,7 +28,7 @@ class FineSums {
     /// To the same bits, in any order.
     void add(const FineSums& more);
     /// True where any sample had light.
-    bool has_light() const;
+    bool has_light() const { return light_.any(); }
     /// Mean over the samples of each quarter, 2 width x 2 height of them, row by row. A quarter without
     /// samples has that of its pixel's others; a pixel without any is zero.
     std::vector<Rgb> mean() const;

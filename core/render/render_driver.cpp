@@ -186,8 +186,9 @@ class PassLoop {
         ++state_.passes_of_this_run;
         state_.passes = result_.film.pass_count();
         // Post-processes may do more after more passes than a preview has shown.
-        const auto seconds = runner_.estimator().seconds_to_finish(result_.film);
-        if (finished_before_ && seconds) state_.seconds_to_finish = *seconds;
+        if (finished_before_)
+            state_.seconds_to_finish =
+                runner_.estimator().seconds_to_finish(result_.film).value_or(state_.seconds_to_finish);
         state_.seconds = seconds_since(start_);
         // The rule must not depend on the clock; for the eye twice a second will do, and a twentieth of the
         // time.

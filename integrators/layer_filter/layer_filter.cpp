@@ -116,17 +116,18 @@ const ParameterList<LayerFilterParameters>& layer_filter_rows() {
 }
 
 LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const FeatureSettings& features,
-                         std::vector<Choice> layers, bool has_variance, MakeFilter make)
+                         std::vector<Choice> layers, std::shared_ptr<const screenspace::OidnLibrary> library,
+                         MakeFilter make)
     : scene_(scene),
       options_(options),
       feature_settings_(features),
       layers_(std::move(layers)),
-      has_variance_(has_variance),
+      library_(std::move(library)),
       make_(std::move(make)) {}
 
 LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options,
                          const LayerFilterParameters& parameters, std::vector<Choice> layers)
-    : LayerFilter(scene, options, parameters.features, std::move(layers), true,
+    : LayerFilter(scene, options, parameters.features, std::move(layers), nullptr,
                   [settings = parameters.filter](const screenspace::FilterFeatures& features,
                                                  screenspace::FilterQuality) {
                       return screenspace::make_own_filter(features, settings);
@@ -134,12 +135,10 @@ LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options,
 
 LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const FeatureSettings& features,
                          std::shared_ptr<const screenspace::OidnLibrary> library, std::vector<Choice> layers)
-    : LayerFilter(scene, options, features, std::move(layers), false,
+    : LayerFilter(scene, options, features, std::move(layers), library,
                   [library](const screenspace::FilterFeatures& found, screenspace::FilterQuality quality) {
                       return screenspace::make_oidn_filter(found, library, quality);
-                  }) {
-    library_ = library;
-}
+                  }) {}
 
 void LayerFilter::find_features(const Film& film, CancelToken cancelled) {
     const bool full = takes_full_features(film);
@@ -176,7 +175,7 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
     for (const Choice& choice : layers_)
         if (!film.has_squares(choice.layer))
             throw std::invalid_argument("a filtered layer needs its squares");
-    if (layers_.empty() || (has_variance_ && !film.has_passes(2))) return;
+    if (layers_.empty() || (!library_ && !film.has_passes(2))) return;
     variances_.clear();
     find_features(film, cancelled);
     if (joins_layers(film)) {
@@ -214,7 +213,7 @@ bool LayerFilter::needs_quarters(const Film& film) const {
 }
 
 bool LayerFilter::takes_full_features(const Film& film) const {
-    return has_variance_ || work_of_pixel(film) >= work_of_features;
+    return !library_ || work_of_pixel(film) >= work_of_features;
 }
 
 double LayerFilter::seconds_to_find_features(const Film& film) const {
@@ -260,13 +259,12 @@ void LayerFilter::apply_to_mean(Film& film, const Choice& choice, CancelToken ca
 LayerOfPasses LayerFilter::of_passes(Film& film, std::size_t layer) const {
     // Our own filter compares noise with details of several pixels, and is tested with that of independent
     // passes.
-    return has_variance_ ? layer_of_passes(film, layer, 2, PassVariance::independent)
-                         : layer_of_passes(film, layer, 4, PassVariance::points);
+    return !library_ ? layer_of_passes(film, layer, 2, PassVariance::independent)
+                     : layer_of_passes(film, layer, 4, PassVariance::points);
 }
 
 bool LayerFilter::joins_layers(const Film& film) const {
-    return !has_variance_ &&
-           work_of_pixel(film) < work_of_layer * double(layers_.size() - kinds(film).size());
+    return library_ && work_of_pixel(film) < work_of_layer * double(layers_.size() - kinds(film).size());
 }
 
 std::vector<LayerFilter::Kind> LayerFilter::kinds(const Film& film) const {
@@ -302,7 +300,7 @@ void LayerFilter::apply_to_sums(Film& film, screenspace::FilterQuality quality, 
 }
 
 bool LayerFilter::apply_for_preview(Film& film, CancelToken cancelled) {
-    if (layers_.empty() || has_variance_) {
+    if (layers_.empty() || !library_) {
         apply(film, cancelled);
         return true;
     }

@@ -63,7 +63,7 @@ class LayerFilter {
     /// True where apply() filters the halves of this film.
     bool has_halves(const core::Film& film) const;
     /// True if layers are filtered, and the filter needs their variance and says what it leaves: our own.
-    bool has_variance() const { return has_variance_ && !layers_.empty(); }
+    bool has_variance() const { return !library_ && !layers_.empty(); }
     /// Remaining variance of each layer of the last apply() of whole passes, mean over channels, in its
     /// order; empty: unknown.
     const std::vector<std::vector<float>>& variances() const { return variances_; }
@@ -74,7 +74,8 @@ class LayerFilter {
     using MakeFilter = std::function<std::unique_ptr<screenspace::ViewFilter>(
         const screenspace::FilterFeatures&, screenspace::FilterQuality)>;
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options, const FeatureSettings& features,
-                std::vector<Choice> layers, bool has_variance, MakeFilter make);
+                std::vector<Choice> layers, std::shared_ptr<const screenspace::OidnLibrary> library,
+                MakeFilter make);
     /// Layers that see the same features, are alike, and have passes.
     struct Kind {
         screenspace::LayerKind kind;
@@ -108,9 +109,8 @@ class LayerFilter {
     core::RenderOptions options_;
     FeatureSettings feature_settings_;
     std::vector<Choice> layers_;
-    bool has_variance_;
-    MakeFilter make_;
     std::shared_ptr<const screenspace::OidnLibrary> library_;  ///< null: our own filter
+    MakeFilter make_;
     std::unique_ptr<screenspace::FilterFeatures> features_;
     std::unique_ptr<screenspace::ViewFilter> filter_;  ///< from the features
     std::unique_ptr<screenspace::FinePixels> fine_;

@@ -179,8 +179,7 @@ void set_quarter(FineFeatures& features, std::size_t quarter, std::span<const Fe
     Vec3 normal(0.0f);
     for (const FeatureSample& s : samples) reflected += s.reflected, normal += s.shading_normal;
     features.reflected[quarter] = reflected / float(samples.size());
-    const float length = glm::length(normal);
-    features.normal[quarter] = length > 0.0f ? normal / length : Vec3(0.0f);
+    features.normal[quarter] = screenspace::unit_or_zero(normal);
 }
 
 }  // namespace

@@ -8,12 +8,12 @@ namespace mote::screenspace {
 
 using namespace core;
 
-namespace {
-
-Vec3 unit(const Vec3& v) {
+Vec3 unit_or_zero(const Vec3& v) {
     const float length = glm::length(v);
     return length > 0.0f ? v / length : Vec3(0.0f);
 }
+
+namespace {
 
 /// True if all samples lie on one smooth surface.
 bool one_surface(const FilterFeatures& f, std::size_t pixel, std::span<const FeatureSample> samples) {
@@ -42,7 +42,7 @@ MeanSurface mean_surface(std::span<const FeatureSample> samples) {
         if (s.hit)
             hits += 1.0f, mean.position += s.position, mean.normal += s.normal, mean.distance += s.distance;
     if (hits == 0.0f) return mean;
-    mean.position /= hits, mean.distance /= hits, mean.normal = unit(mean.normal), mean.hit = true;
+    mean.position /= hits, mean.distance /= hits, mean.normal = unit_or_zero(mean.normal), mean.hit = true;
     return mean;
 }
 
@@ -59,7 +59,7 @@ bool FilterFeatures::set_pixel(std::size_t pixel, std::span<const FeatureSample>
         complete = complete && s.hit && s.filterable;
         filterable = filterable || (s.hit && s.filterable);
     }
-    position[pixel] = mean.position, normal[pixel] = mean.normal, shading_normal[pixel] = unit(shading);
+    position[pixel] = mean.position, normal[pixel] = mean.normal, shading_normal[pixel] = unit_or_zero(shading);
     distance[pixel] = mean.hit ? mean.distance : far, transmittance[pixel] = passes * per_sample;
     reflected[pixel] = reflects * per_sample, scattering[pixel] = scatters * per_sample, frame[pixel] = at;
     kind[pixel] = !filterable                                  ? PixelKind::none

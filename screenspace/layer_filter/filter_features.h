@@ -66,6 +66,9 @@ struct FilterFeatures {
     bool set_pixel(std::size_t pixel, std::span<const FeatureSample> samples, const PixelFrame& at);
 };
 
+/// The direction of a sum of normals; zero where they cancel or there are none.
+core::Vec3 unit_or_zero(const core::Vec3& v);
+
 /// The mean of the samples that hit: where a PixelFrame is to be found.
 struct MeanSurface {
     core::Vec3 position{0.0f}, normal{0.0f};

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "screenspace/layer_filter/oidn_features.h"
+
 namespace mote::screenspace {
 
 using namespace core;
@@ -62,13 +64,11 @@ FinePixels::FinePixels(FineFeatures features, std::shared_ptr<const OidnLibrary>
     : features_(std::move(features)), library_(std::move(library)), filter_(std::move(filter)) {
     using Feature = OidnLibrary::Feature;
     FineFeatures& f = features_;
-    for (Rgb& r : f.reflected) r = is_finite(r) ? glm::clamp(r, Rgb(0.0f), Rgb(1.0f)) : Rgb(0.0f);
-    const auto clean = [&](Feature which, std::vector<Rgb>& values) {
-        if (std::ranges::any_of(values, [](const Rgb& v) { return v != Rgb(0.0f); }))
-            values = library_->denoised_feature(which, f.width, f.height, values);
+    const auto clean = [&](Feature which, std::vector<Rgb> values) {
+        return without_noise(*library_, which, f.width, f.height, std::move(values));
     };
-    clean(Feature::albedo, f.reflected);
-    if (!f.sharp) clean(Feature::normal, f.normal);
+    f.reflected = clean(Feature::albedo, between_0_and_1(std::move(f.reflected)));
+    if (!f.sharp) f.normal = clean(Feature::normal, std::move(f.normal));
 }
 
 std::vector<Rgb> FinePixels::denoised(std::span<const Rgb> fine) {

@@ -2,9 +2,7 @@
 // and then put together by the picture's own filter.
 //
 // The network takes a pixel whose samples see several surfaces for noise; features of quarters show it what
-// they are. Of the layers of surfaces that leaves a third to a tenth of the passes for the same error
-// (docs/methods/layers.md). Media have no such edges, and quarters more noise than pixels: for them it is
-// worse.
+// they are. Media have no such edges, and quarters more noise than pixels: for them it is worse.
 #pragma once
 
 #include <memory>
@@ -12,7 +10,6 @@
 #include <span>
 #include <vector>
 
-#include "core/objects/cancellation.h"
 #include "core/render/integrator.h"
 #include "screenspace/denoising/oidn_library.h"
 

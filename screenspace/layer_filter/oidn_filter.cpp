@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "screenspace/denoising/variance_blend.h"
+#include "screenspace/layer_filter/oidn_features.h"
 #include "screenspace/layer_filter/view_filter.h"
 
 namespace mote::screenspace {
@@ -15,15 +16,6 @@ namespace {
 constexpr int blend_radius = 5;
 constexpr float blend_deviations = 2.0f;
 
-std::vector<Rgb> between_0_and_1(std::vector<Rgb> values) {
-    for (Rgb& v : values) v = is_finite(v) ? glm::clamp(v, Rgb(0.0f), Rgb(1.0f)) : Rgb(0.0f);
-    return values;
-}
-
-bool is_zero(std::span<const Rgb> values) {
-    return std::ranges::all_of(values, [](const Rgb& v) { return v == Rgb(0.0f); });
-}
-
 class OidnFilter final : public ViewFilter {
   public:
     OidnFilter(const FilterFeatures& f, std::shared_ptr<const OidnLibrary> library, FilterQuality features)
@@ -33,9 +25,7 @@ class OidnFilter final : public ViewFilter {
           clean_features_(features == FilterQuality::full) {
         using Feature = OidnLibrary::Feature;
         const auto clean = [&](Feature which, const std::vector<Rgb>& values) {
-            return clean_features_ && !is_zero(values)
-                       ? library_->denoised_feature(which, width_, height_, values)
-                       : values;
+            return clean_features_ ? without_noise(*library_, which, width_, height_, values) : values;
         };
         reflected_ = clean(Feature::albedo, between_0_and_1(f.reflected));
         scattering_ = clean(Feature::albedo, between_0_and_1(f.scattering));

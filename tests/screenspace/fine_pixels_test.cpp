@@ -2,7 +2,6 @@
 #include "screenspace/layer_filter/fine_pixels.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/support/catch.h"
 #include "tests/support/environment.h"
