@@ -47,6 +47,9 @@ void plan_caustics(core::Plan& plan, const core::Scene& scene, const core::Requi
 /// Choice among several lights for direct light (core/scene/light_tree.h); nothing where there is one.
 void plan_choice_of_lights(core::Plan& plan, const core::Scene& scene);
 
+/// Several samples of lights at one vertex (eye_path/light_samples.h); nothing where there is one.
+void plan_samples_of_lights(core::Plan& plan, const core::Scene& scene);
+
 /// Sampling of the emission of media.
 void plan_medium_lights(core::Plan& plan, const core::Requirements& requirements);
 

@@ -35,7 +35,7 @@ struct TrackingCounters {
 struct PathWeights {
     Rgb throughput{1.0f};      ///< weight of the light found at the end, before the division above
     Rgb unidirectional{1.0f};  ///< pdf_c / pdf_hero of the path as sampled, per channel c
-    Rgb light{0.0f};    ///< by light sampling of the last vertex instead, over pdf_hero; black where none
+    Rgb light{0.0f};    ///< by all light samples of the last vertex instead, over pdf_hero; black where none
     int hero = 0;       ///< the channel that drives distance sampling: 0, 1 or 2
     Vec3 vertex{0.0f};  ///< where the path scattered last, and light sampling would start from
 };

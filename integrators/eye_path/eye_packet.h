@@ -92,17 +92,30 @@ class EyePacket {
     }
     /// Next-event estimation at all vertices that can be connected, where it is wanted.
     void sample_lights(const lights::LightSampling& how = {}) {
+        for (int k = 0; k < settings_.limits.light_samples.at_most(); ++k)
+            if (!sample_lights(k, how)) return;
+    }
+
+    Lane& operator[](int lane) { return lanes_[std::size_t(lane)]; }
+    const Lane& operator[](int lane) const { return lanes_[std::size_t(lane)]; }
+    core::WalkContext& walk() { return walk_; }
+
+  private:
+    /// Sample k of each lane that takes so many. Returns false where none does.
+    bool sample_lights(int k, const lights::LightSampling& how) {
         core::ShadowPacket shadows;
         shadows.clear();
         std::array<bool, width> connected{};
         std::size_t rays = 0;
+        bool any = false;
         for (int i = 0; i < width; ++i) {
             Lane& lane = lanes_[std::size_t(i)];
             lights::LightConnection& c = connections_[std::size_t(i)];
-            const bool begun = lane.advanced && lane.alive && lane.path->vertex().connectable() &&
-                               lane.path->wants_connection() && lane.path->begin_light(c, how);
+            const bool wanted = lane.advanced && lane.alive && k < lane.path->light_samples() &&
+                                lane.path->vertex().connectable() && lane.path->wants_connection();
+            const bool begun = wanted && lane.path->begin_light(k, c, how);
             const bool traced = begun && !c.map;
-            connected[std::size_t(i)] = begun, rays += traced;
+            connected[std::size_t(i)] = begun, rays += traced, any |= wanted;
             if (traced)
                 shadows.set(i, c.shadow.origin, c.shadow.direction, c.shadow.t_max);
             else
@@ -115,13 +128,8 @@ class EyePacket {
             if (!connected[std::size_t(i)] || (!c.map && shadows.occluded(i))) return;
             lane.sum[lane.path->layer_of_connection()] += lane.path->finish_light(c, walk_, how);
         });
+        return any;
     }
-
-    Lane& operator[](int lane) { return lanes_[std::size_t(lane)]; }
-    const Lane& operator[](int lane) const { return lanes_[std::size_t(lane)]; }
-    core::WalkContext& walk() { return walk_; }
-
-  private:
     /// Returns false where no path was alive.
     template <typename OnSegment>
     bool advance(const OnSegment& on_segment) {

@@ -112,23 +112,32 @@ class EyePath {
 
     // At a vertex:
     const core::ScatteringVertex& vertex() const { return vertex_; }
-    /// Next-event estimation: light of one light sampled for the vertex (lights/direct_light/direct_light.h).
+    /// Next-event estimation: light of lights sampled for the vertex (lights/direct_light/direct_light.h).
     core::Rgb sample_light(core::WalkContext& context, const lights::LightSampling& how = {}) {
-        lights::LightConnection connection;
-        if (!begin_light(connection, how)) return core::Rgb(0.0f);
-        if (!connection.map) {
-            ++context.rays.occlusion;
-            if (!lights_.visible(connection.shadow)) return core::Rgb(0.0f);
+        core::Rgb sum(0.0f);
+        for (int k = 0; k < light_samples(); ++k) {
+            lights::LightConnection connection;
+            if (!begin_light(k, connection, how)) continue;
+            if (!connection.map) {
+                ++context.rays.occlusion;
+                if (!lights_.visible(connection.shadow)) continue;
+            }
+            sum += finish_light(connection, context, how);
         }
-        return finish_light(connection, context, how);
+        return sum;
     }
-    /// The two halves of sample_light(), between which a packet traces the shadow rays of many paths. False:
-    /// no light arrives.
-    bool begin_light(lights::LightConnection& connection, const lights::LightSampling& how) {
+    /// Samples of lights at the vertex, whose light is added up.
+    int light_samples() const { return limits_.light_samples.at(scatterings_, vertex_.on_surface()); }
+    /// The two halves of sample_light(), between which a packet traces the shadow rays of many paths: sample
+    /// k < light_samples(), in that order. False: no light arrives.
+    bool begin_light(int k, lights::LightConnection& connection, const lights::LightSampling& how) {
         if (factors_.connectable == 0.0f) return false;
-        if (!lights::begin_connection(vertex_, lights_.choose_light(vertex_.light_receiver(), choices_.x),
-                                      sampler_.next_2d(), how, Media, connection))
+        if (k == 0) light_point_ = sampler_.next_2d();
+        const LightNumbers u = numbers_of_light({choices_.x, light_point_}, k, light_samples());
+        if (!lights::begin_connection(vertex_, lights_.choose_light(vertex_.light_receiver(), u.choice),
+                                      u.point, how, Media, connection))
             return false;
+        connection.pdf_light *= float(light_samples());  // Veach 1997, Eq. 9.8: n_i p_i
         const core::DirectSample& light = connection.light;
         if (!light.delta)
             connection.pdf_scatter =
@@ -243,7 +252,8 @@ class EyePath {
     /// Radiance that the guide expects of the path, and behind the vertex without next-event estimation
     /// there, where it chooses vertices; 0: unknown.
     float expected_ = 0.0f, indirect_ = 0.0f;
-    core::Vec2 choices_{0.0f};  ///< of the light, and of the lobe
+    core::Vec2 choices_{0.0f};      ///< of the light, and of the lobe
+    core::Vec2 light_point_{0.0f};  ///< on the light that is sampled first
     core::LightReceiver previous_;
     bool connected_ = false;  ///< next-event estimation at `previous_` could find the next light
     bool surface_first_ = true;
@@ -404,13 +414,14 @@ bool EyePath<Media>::scatter(core::WalkContext& context) {
     const core::ScatterSample* const next = &guided->scattering;
     const float factor = next->delta ? factors_.delta : factors_.connectable;
     if (factor == 0.0f) return false;
+    const int samples = light_samples();
     if (!next->delta || scatterings_ > 0) {  // mirrors and glass before the first connectable vertex: none
         if (scatterings_ == 0)
             surface_first_ = vertex_.on_surface(), first_cosine_ = vertex_.shading_cosine(next->wi);
         ++scatterings_;
     }
     scale(factor);
-    lights::apply_scattering<Media>(weights_, *next, vertex_.position);
+    lights::apply_scattering<Media>(weights_, *next, vertex_.position, samples);
     if (core::is_black(weights_.throughput)) return false;
     if (Media && vertex_.on_surface()) state_ = vertex_.state_towards(state_, next->wi);
     eta_ *= next->eta, guide_ratio_ *= guided->pdf_ratio;

@@ -3,6 +3,7 @@
 
 #include "core/scene/light_tree.h"
 #include "core/scene/scene.h"
+#include "integrators/eye_path/light_samples.h"
 #include "integrators/register_parts.h"
 
 namespace mote::integrators {
@@ -36,6 +37,17 @@ void plan_choice_of_lights(Plan& plan, const Scene& scene) {
                              others.empty() ? "" : "; " + others),
                  "each receiver samples one by distance, directions and intensity; one in 16 by power, for "
                  "what the hierarchy does not see");
+}
+
+void plan_samples_of_lights(Plan& plan, const Scene& scene) {
+    const LightSamples samples = light_samples_for(scene);
+    if (samples.at_most() == 1) return;
+    const std::string in_media = scene.has_media() ? fmt::format(", {} in media", samples.media) : "";
+    plan.run("samples of lights",
+             fmt::format("{} on surfaces{}, at the first two vertices of a path", samples.surfaces, in_media),
+             samples.media < samples.surfaces
+                 ? "shadow rays take little time; in media transmittance would have to be looked up"
+                 : "shadow rays take little time");
 }
 
 void plan_medium_lights(Plan& plan, const Requirements& r) {

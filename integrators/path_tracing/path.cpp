@@ -35,6 +35,7 @@ class Path final : public Integrator {
             plan.leave_out("media", "no code for media runs", "the scene has none");
         plan_guiding(plan, settings_.guiding, requirements, false);
         plan_choice_of_lights(plan, scene);
+        plan_samples_of_lights(plan, scene);
         plan_caustics(plan, scene, requirements);
         return plan;
     }

@@ -18,6 +18,7 @@ class PathEstimator final : public Estimator {
     PathEstimator(const Scene& scene, const RenderOptions& options, const PathSettings& settings)
         : scene_(scene), settings_(settings), loop_(scene, options), again_(scene, options) {
         settings_.limits.wanted = options.cells;
+        settings_.limits.light_samples = light_samples_for(scene);
         if (!Media && WavefrontScene::suits(scene, settings_)) wavefront_.emplace(scene, settings_.limits);
         if (settings_.guiding.mode == Guiding::off) return;
         const Stopwatch stopwatch(training_seconds_);

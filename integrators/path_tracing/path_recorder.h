@@ -30,13 +30,12 @@ class PathRecorder {
         if (lane.path->depth() == 1 || !lights::LearnedGuide::guides(left) ||
             path.arriving.size() == max_records)
             return;
-        const core::PathWeights& w = segment.before;
+        const float pdf = lane.path->pdf_of_direction();
         const float inverse_distance = 1.0f / segment.event.distance;
-        if (!(w.light.x > 0.0f)) return;                                              // a delta scattering
+        if (std::isinf(pdf)) return;                                                  // a delta scattering
         if (!(inverse_distance >= 0.0f) || !std::isfinite(inverse_distance)) return;  // it went nowhere
-        const float inverse_pdf = w.light.x / (Media ? w.unidirectional.x : 1.0f);
-        path.arriving.push_back({{left.position, segment.ray.direction, inverse_pdf, inverse_distance},
-                                 lights::throughput_of<Media>(w),
+        path.arriving.push_back({{left.position, segment.ray.direction, 1.0f / pdf, inverse_distance},
+                                 lights::throughput_of<Media>(segment.before),
                                  path.found,
                                  left.on_surface()});
         path.left_by_record = true;

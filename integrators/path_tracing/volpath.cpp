@@ -80,6 +80,7 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
     plan_guiding(plan, settings_.guiding, requirements, true);
     plan_media(plan, requirements);
     plan_choice_of_lights(plan, scene);
+    plan_samples_of_lights(plan, scene);
     plan_medium_lights(plan, requirements);
     if (bounded())
         plan.run("bound", std::to_string(settings_.bound) + " /m^2",

@@ -44,7 +44,7 @@ void Wavefront::start(const EyeRay& eye) {
     if (i == 0) samplers_.clear(), rngs_.clear(), sums_.clear(), depth_ = 0;
     samplers_.push_back(eye.sampler), rngs_.push_back(eye.rng), sums_.emplace_back();
     path_[i] = i, rays_.set(i, eye.ray);
-    throughput_.set(i, Rgb(1.0f)), inverse_pdf_[i] = 0.0f, eta_[i] = 1.0f, scatterings_[i] = 0;
+    throughput_.set(i, Rgb(1.0f)), light_ratio_[i] = 0.0f, eta_[i] = 1.0f, scatterings_[i] = 0;
     guide_ratio_[i] = 1.0f;
 }
 
@@ -56,7 +56,7 @@ void Wavefront::run() {
         scene_.rays().closest(rays_, depth_ == 1, hits_);
         arrive();
         if (guided_) find_guides();
-        connect();
+        for (int k = 0; k < limits_.light_samples.at_most() && next_light_sample(k); ++k) connect();
         sample_lambertian();
         if (guided_) sample_guides();
         leave();
@@ -72,10 +72,10 @@ void Wavefront::arrive() {
         const Transport layer = transport_layer(scatterings_[i], true);
         if ((shape ? shape->emitter != nullptr : scene_.environment() != nullptr) && limits_.wanted[layer])
             sums_[std::size_t(path_[i])][layer] += found_light(i);
-        kind_[i] = Kind::ended, connects_[i] = false;
+        kind_[i] = Kind::ended, light_samples_[i] = 0;
         if (shape && !last && scatterings_[i] != limits_.max_scatterings) make_vertex(i);
     }
-    for (int i = rays_.count; i < padded(rays_.count); ++i) kind_[i] = Kind::ended, connects_[i] = false;
+    for (int i = rays_.count; i < padded(rays_.count); ++i) kind_[i] = Kind::ended, light_samples_[i] = 0;
 }
 
 Rgb Wavefront::found_light(int i) const {
@@ -85,9 +85,9 @@ Rgb Wavefront::found_light(int i) const {
         event.hit = scene_.rays().surface_hit(rays_, hits_, i);
     }
     PathWeights weights;
-    weights.throughput = throughput_.get(i), weights.light = Rgb(inverse_pdf_[i]);
+    weights.throughput = throughput_.get(i), weights.light = Rgb(light_ratio_[i]);
     return lights::found_light<false>(scene_, event, rays_.ray(i), weights,
-                                      inverse_pdf_[i] > 0.0f ? &previous_[i] : nullptr);
+                                      light_ratio_[i] > 0.0f ? &previous_[i] : nullptr);
 }
 
 /// The material, and the random numbers that the vertex needs.
@@ -108,11 +108,10 @@ void Wavefront::make_vertex(int i) {
     }
     Sampler& sampler = samplers_[std::size_t(path_[i])];
     const Vec2 choices = sampler.next_2d();
-    u_light_[i] = choices.x, u_lobe_[i] = choices.y;
-    connects_[i] = connectable && limits_.wanted[layer_of_connection(i)];
-    if (connects_[i]) {
-        const Vec2 u = sampler.next_2d();
-        u_light_x_[i] = u.x, u_light_y_[i] = u.y;
+    u_lobe_[i] = choices.y;
+    if (connectable && limits_.wanted[layer_of_connection(i)]) {
+        light_samples_[i] = limits_.light_samples.at(scatterings_[i], true);
+        first_light_[i] = {choices.x, sampler.next_2d()};
     }
     const Vec2 u = sampler.next_2d();
     u_scatter_x_[i] = u.x, u_scatter_y_[i] = u.y;
@@ -122,6 +121,19 @@ LightReceiver Wavefront::receiver(int i) const {
     if (kind_[i] == Kind::other) return others_[std::size_t(i)].light_receiver();
     const Vec3 n = hits_.geometric_normal.get(i);
     return {hits_.position.get(i), glm::dot(n, rays_.direction.get(i)) > 0.0f ? -n : n};
+}
+
+/// Makes the connections of sample k of all vertices that take so many wanted. Returns false where none is.
+bool Wavefront::next_light_sample(int k) {
+    bool any = false;
+    for (int i = 0; i < padded(rays_.count); ++i) {
+        connects_[i] = k < light_samples_[i];
+        if (!connects_[i]) continue;
+        const LightNumbers u = numbers_of_light(first_light_[i], k, light_samples_[i]);
+        u_light_[i] = u.choice, u_light_x_[i] = u.point.x, u_light_y_[i] = u.point.y;
+        any = true;
+    }
+    return any;
 }
 
 /// Next-event estimation at all vertices.
@@ -182,7 +194,8 @@ void Wavefront::weight_lambertian() {
         const float pdf = std::fabs(cosine) * inv_pi;
         // Veach 1997, Eq. 9.8, with f C* = reflectance pdf
         const float pdf_scatter = own_probability_[i] * pdf + guide_to_light_[i];
-        const float weight = sides > 0.0f ? pdf / (pdf_light_[i] + finds_light_[i] * pdf_scatter) : 0.0f;
+        const float pdf_light = float(light_samples_[i]) * pdf_light_[i];
+        const float weight = sides > 0.0f ? pdf / (pdf_light + finds_light_[i] * pdf_scatter) : 0.0f;
         connected_.set(i, throughput_.get(i) * reflectance_.get(i) * radiance_.get(i) * weight);
         const Vec3 origin = offset_origin(hits_.position.get(i), ng, hits_.error[i], wi);
         shadow_origin_.set(i, origin);
@@ -196,6 +209,7 @@ void Wavefront::connect_other(int i) {
     const LightChoice choice = scene_.choose_light(vertex.light_receiver(), u_light_[i]);
     connects_[i] = lights::begin_connection(vertex, choice, {u_light_x_[i], u_light_y_[i]}, {}, false, c);
     if (!connects_[i]) return;
+    c.pdf_light *= float(light_samples_[i]);
     if (!c.light.delta)
         c.pdf_scatter = lights::guided_pdf(lobes(i), c.light.wi, c.pdf_scatter, c.light.line_density);
     PathWeights weights;
@@ -270,7 +284,7 @@ bool Wavefront::sample_other(int i) {
     const ScatterSample* const next = &guided->scattering;
     scatterings_[i] += !next->delta || scatterings_[i] > 0;
     const bool found_alone = next->delta || !(next->pdf_solid_angle > 0.0f);
-    inverse_pdf_[i] = found_alone ? 0.0f : 1.0f / next->pdf_solid_angle;
+    light_ratio_[i] = found_alone ? 0.0f : samples_of_lights(i) / next->pdf_solid_angle;
     throughput_.set(i, throughput_.get(i) * next->weight), eta_[i] *= next->eta;
     guide_ratio_[i] *= guided->pdf_ratio;
     next_direction_.set(i, next->wi), next_origin_.set(i, vertex.ray_origin(next->wi));
@@ -287,7 +301,7 @@ void Wavefront::leave() {
             if (!sample_other(i)) continue;
         } else {
             if (!(next_pdf_[i] > 0.0f)) continue;
-            ++scatterings_[i], inverse_pdf_[i] = 1.0f / next_pdf_[i];
+            ++scatterings_[i], light_ratio_[i] = samples_of_lights(i) / next_pdf_[i];
             throughput_.set(i, throughput_.get(i) * reflectance_.get(i) * next_weight_[i]);
             guide_ratio_[i] *= min_of(1.0f / next_weight_[i], lights::max_pdf_ratio);
         }
@@ -301,7 +315,7 @@ void Wavefront::move(int from, int to) {
     rays_.set(to, {next_origin_.get(from), next_direction_.get(from)});
     path_[to] = path_[from], scatterings_[to] = scatterings_[from];
     throughput_.set(to, throughput_.get(from));
-    inverse_pdf_[to] = inverse_pdf_[from], eta_[to] = eta_[from];
+    light_ratio_[to] = light_ratio_[from], eta_[to] = eta_[from];
     guide_ratio_[to] = guide_ratio_[from];
 }
 

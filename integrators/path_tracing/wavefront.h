@@ -61,6 +61,7 @@ class Wavefront {
     void arrive();
     core::Rgb found_light(int i) const;
     void make_vertex(int i);
+    bool next_light_sample(int k);
     void connect();
     void sample_light_of(int i);
     void sample_parallelogram();
@@ -75,6 +76,7 @@ class Wavefront {
     void move(int from, int to);
     core::LightReceiver receiver(int i) const;
     const lights::VmfMixture& lobes(int i) const;
+    float samples_of_lights(int i) const { return float(std::max(1, light_samples_[i])); }
     core::Vec3 wo(int i) const { return -rays_.direction.get(i); }
     Transport layer_of_connection(int i) const { return transport_layer(scatterings_[i] + 1, true); }
 
@@ -95,7 +97,7 @@ class Wavefront {
     int path_[capacity];
     core::RayBatch rays_;
     Vectors throughput_;
-    Numbers inverse_pdf_;  ///< 1 / density of the direction; 0: no light could have been connected to
+    Numbers light_ratio_;  ///< samples of lights at `previous_` / density of the direction; 0: none finds it
     Numbers eta_;          ///< product of relative indices of refraction
     int scatterings_[capacity];
     core::LightReceiver previous_[capacity];
@@ -109,7 +111,9 @@ class Wavefront {
     std::vector<core::ScatteringVertex> others_;  ///< on other materials; empty before the first of them
     bool any_other_ = false;
     Numbers u_lobe_, u_light_, u_light_x_, u_light_y_, u_scatter_x_, u_scatter_y_;
-    bool connects_[capacity];  ///< next-event estimation is wanted
+    int light_samples_[capacity];         ///< of next-event estimation; 0: it is not wanted
+    LightNumbers first_light_[capacity];  ///< of the first of them
+    bool connects_[capacity];             ///< one is taken now
 
     // By lane, of guided paths; without, as they are here:
     std::vector<lights::VmfMixture> lobes_;  ///< directions of the guide at the vertices

@@ -133,7 +133,8 @@ Rgb found_light(const LitScene& scene, const WalkEvent& event, const Ray& ray, c
     if (!previous) return weights.throughput * radiance / channel_average<Media>(unidirectional);
     const float pdf_light = scene.light_probability(*previous, emitter) *
                             emitter->pdf_direct(previous->position, ray.direction, hit);
-    // Eq. 9.8 seen from the other technique: weights.light holds 1 / p(w) of the direction that led here.
+    // Eq. 9.8 seen from the other technique: weights.light holds n / p(w) of the direction that led
+    // here, n the samples of lights where it left.
     return weights.throughput * radiance / channel_average<Media>(unidirectional + weights.light * pdf_light);
 }
 

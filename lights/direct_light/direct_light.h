@@ -81,14 +81,15 @@ core::Rgb found_light(const core::LitScene& scene, const core::WalkEvent& event,
                       const core::PathWeights& weights, const core::LightReceiver* previous);
 
 /// Multiplies `weights` by a scattering sampled at `position` and prepares its rescaled pdfs for the next
-/// event.
+/// event. `light_samples`: of next-event estimation there.
 template <bool Media>
 inline void apply_scattering(core::PathWeights& weights, const core::ScatterSample& s,
-                             const core::Vec3& position) {
+                             const core::Vec3& position, int light_samples = 1) {
     weights.throughput *= s.weight;
     weights.vertex = position;
     const core::Rgb base = Media ? weights.unidirectional : core::Rgb(1.0f);
-    weights.light = s.delta || !(s.pdf_solid_angle > 0.0f) ? core::Rgb(0.0f) : base / s.pdf_solid_angle;
+    weights.light = s.delta || !(s.pdf_solid_angle > 0.0f) ? core::Rgb(0.0f)
+                                                           : base * float(light_samples) / s.pdf_solid_angle;
 }
 
 /// The other technique for direct light: what lies in the direction `s` that `vertex` scatters to, and the

@@ -94,7 +94,11 @@ void check_same(const Scene& scene, const EyePathLimits& limits, const lights::S
 }
 void check_same(const std::string& xml, const EyePathLimits& limits = {}) {
     const auto scene = scene_from(xml, size);
-    check_same(*scene, limits, lights::no_guide());
+    for (const int samples : {1, 2}) {
+        EyePathLimits sampled = limits;
+        sampled.light_samples.surfaces = samples;
+        check_same(*scene, sampled, lights::no_guide());
+    }
 }
 
 }  // namespace
@@ -129,5 +133,6 @@ TEST_CASE("a wavefront of guided paths follows those of packets", "[integrators]
         const lights::LearnedGuide* const guide = training.guide();
         REQUIRE_FALSE(guide->surfaces().at(Vec3(0.0f)).empty);
         check_same(*scene, {}, *guide);
+        check_same(*scene, {.light_samples = {2, 1}}, *guide);
     }
 }
