@@ -15,8 +15,8 @@ double of(const Counts& counts, const char* name) {
 double counted_work(const Statistics& s) {
     const double rays = of(s.rays, "closest") + 0.5 * of(s.rays, "occlusion") + 0.5 * of(s.rays, "boundary");
     const double lookups =
-        of(s.lookups, "density") + 0.25 * of(s.lookups, "shadow_maps") + of(s.values, "march_steps");
-    return rays + 0.25 * lookups;
+        of(s.lookups, "density") + 2.0 * of(s.lookups, "shadow_maps") + of(s.values, "march_steps");
+    return rays + lookups / 32.0;
 }
 
 }  // namespace mote::core

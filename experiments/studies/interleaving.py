@@ -33,7 +33,7 @@ def counted_work(s):
     """As core/render/counted_work.cpp has it."""
     rays, lookups = s["rays"], s["lookups"]
     return (rays.get("closest", 0) + 0.5 * rays.get("occlusion", 0) + 0.5 * rays.get("boundary", 0)
-            + 0.25 * lookups.get("density", 0))
+            + lookups.get("density", 0) / 32)
 
 
 def render(args, scene, settings, passes, seed, folder):

@@ -26,7 +26,7 @@ from measure import series_error, use
 SCENES = ("smoke_room", "fog_grille")
 LAYERS = ("", "single_scattering", "multiple_scattering_bounded", "direct", "indirect_bounded")
 WORK = {"closest": 1.0, "occlusion": 0.5, "boundary": 0.5}  # as counted_work.cpp has them; of lookups below
-LOOKUP = 0.25
+LOOKUP = 1 / 32
 
 
 def run(args, scene, integrator, more, folder):

@@ -16,12 +16,12 @@ namespace {
 
 /// Closest hits a pixel of passes, for each run of the denoiser saved, below which layers of a kind are
 /// denoised as one. A run takes as long as some 3 to 60, by scene and processor; one for each layer lowers
-/// the error by 1 to 16 %. At this work it is worth its time in five scenes of six (smoke room: from 90 on).
-constexpr double work_of_layer = 20.0;
+/// the error by 1 to 16 %. At this work it is worth its time in five scenes of six (smoke room: from 50 on).
+constexpr double work_of_layer = 15.0;
 
 /// Closest hits a pixel of passes below which OpenImageDenoise takes rough features, with their noise: the
-/// error is larger by a tenth, but to march and denoise the others takes as long as some 90
-/// (smoke room).
+/// error is larger by 12 to 20 %, but to march and denoise the others takes as long as 40 (city) to more than
+/// 90 (smoke room, Cornell box).
 constexpr double work_of_features = 90.0;
 FeatureSettings rough(const FeatureSettings& s) { return {std::min(s.samples, 4), 4.0f * s.voxels}; }
 
