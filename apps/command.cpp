@@ -119,7 +119,7 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
         ->check(CLI::IsMember({"oidn", "bmfr"}));
     command.add_flag(fmt::format("--tev{{{}}}", TevViewer::default_address), a.tev,
                      "Show the picture so far in the viewer tev, which may run elsewhere (--tev=HOST:PORT)");
-    command.add_flag("--quiet", a.quiet, "No progress, no warnings");
+    command.add_flag("--quiet", a.quiet, "No progress, no warnings, no previews of the first half minute");
     command.add_flag("-v,--verbose", a.verbose, "Also print the plan and where the time went");
     command.callback([&a, &action] {
         if (a.error) a.scene.defines.emplace_back("film.interval=true");

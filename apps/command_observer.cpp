@@ -40,6 +40,12 @@ void CommandObserver::preview(const core::ImageChannels& image) {
     show(image.rgb(""));
 }
 
+bool CommandObserver::preview_is_seen() const {
+    constexpr std::chrono::seconds long_render{30};
+    return !arguments_.quiet || arguments_.seconds || viewer_ ||
+           std::chrono::steady_clock::now() - start_ > long_render;
+}
+
 void CommandObserver::warning(const std::string& text) {
     if (!arguments_.quiet) note("warning: " + text);
 }

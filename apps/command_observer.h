@@ -1,6 +1,7 @@
 // Observer of a render by the command line: progress, signals, preview file and viewer.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -25,6 +26,9 @@ class CommandObserver : public RenderObserver {
     bool cancelled() override { return interruption_.signal_number() != 0; }
     bool wants_previews() const override { return !preview_file_.empty() || viewer_; }
     void preview(const core::ImageChannels& image) override;
+    /// Without progress, previews are for a look into a long render. With a limit of time
+    /// they are made as always, since they measure how long the denoiser will take.
+    bool preview_is_seen() const override;
     void warning(const std::string& text) override;
     void building_is_over() override;
     /// The last line of progress ends, and the viewer receives the final picture.
@@ -38,6 +42,7 @@ class CommandObserver : public RenderObserver {
     Interruption& interruption_;
     ProgressLine line_;
     std::optional<TevViewer> viewer_;
+    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace mote::apps

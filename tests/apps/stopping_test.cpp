@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "core/formats/pictures/image_file.h"
 #include "tests/apps/run_mote.h"
@@ -274,4 +275,18 @@ TEST_CASE("A trade and its reference end at once while the scene is loaded", "[c
         CHECK(r.err.find("interrupted while loading the scene: no pixel was rendered yet") !=
               std::string::npos);
     }
+}
+
+TEST_CASE("without progress nothing is spent on previews of a short render, unless its time is limited",
+          "[stopping]") {
+    const Folder folder;
+    const auto makes_previews = [&](const std::vector<std::string>& more) {
+        REQUIRE(run_mote(folder, folder.render(more) +
+                                     std::vector<std::string>{"--integrator", "path", "--stats", "a.json"})
+                    .exit_code == 0);
+        return nlohmann::json::parse(read_file(folder.file("a.json")))["seconds"].contains("previews");
+    };
+    CHECK(makes_previews({"--passes", "3"}));
+    CHECK_FALSE(makes_previews({"--passes", "3", "--quiet"}));
+    CHECK(makes_previews({"--passes", "3", "--time", "60", "--quiet"}));
 }
