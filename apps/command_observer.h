@@ -26,8 +26,8 @@ class CommandObserver : public RenderObserver {
     bool cancelled() override { return interruption_.signal_number() != 0; }
     bool wants_previews() const override { return !preview_file_.empty() || viewer_; }
     void preview(const core::ImageChannels& image) override;
-    /// Without progress, previews are for a look into a long render. With a limit of time
-    /// they are made as always, since they measure how long the denoiser will take.
+    /// Without progress, previews are for a look into a long render. With a limit of time they are made as
+    /// always, since they measure how long the denoiser will take.
     bool preview_is_seen() const override;
     void warning(const std::string& text) override;
     void building_is_over() override;

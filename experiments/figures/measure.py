@@ -36,6 +36,14 @@ def _options(mask, variances):
     return {"mask": mask, **dict(zip(names, _arrays(variances or ())))}
 
 
+def counted_work(statistics):
+    """Work of a render [closest hits], by the weights of core/render/counted_work.cpp."""
+    rays, lookups = statistics["rays"], statistics["lookups"]
+    return (rays.get("closest", 0) + 0.5 * rays.get("occlusion", 0) + 0.5 * rays.get("boundary", 0)
+            + (lookups.get("density", 0) + 2 * lookups.get("shadow_maps", 0)
+               + statistics["values"].get("march_steps", 0)) / 32)
+
+
 def series_error(pictures, references, mask=None, variances=None):
     """For pictures by one method: "error" of one of them, "squared_error", "bias", "systematic", "noise", ... as
     mote.series_error() has them. mask: pixels that count. variances: those of the references' means."""

@@ -29,13 +29,6 @@ METHODS = [("n = 1", {}, 4), ("n = 1, filter", {"filter": "true"}, 4),
            ("upsampling 4, filter", {"upsampling": 4, "filter": "true"}, 24)]
 
 
-def counted_work(s):
-    """As core/render/counted_work.cpp has it."""
-    rays, lookups = s["rays"], s["lookups"]
-    return (rays.get("closest", 0) + 0.5 * rays.get("occlusion", 0) + 0.5 * rays.get("boundary", 0)
-            + lookups.get("density", 0) / 32)
-
-
 def render(args, scene, settings, passes, seed, folder):
     exr, stats = folder / "p.exr", folder / "p.json"
     width, height = (args.scale * n for n in SCENES[scene])
@@ -45,7 +38,7 @@ def render(args, scene, settings, passes, seed, folder):
                     "-D", f"resx={width}", "-D", f"resy={height}", "--passes", str(passes), "--seed", str(seed), *defines,
                     "-o", exr, "--stats", stats], check=True)
     s = json.loads(stats.read_text())
-    return read_exr(exr), counted_work(s) / (width * height), s["seconds"]["render"] + s["seconds"].get("finish", 0)
+    return read_exr(exr), measure.counted_work(s) / (width * height), s["seconds"]["render"] + s["seconds"].get("finish", 0)
 
 
 def study(args, scene, folder):

@@ -21,12 +21,10 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "experiments/figures"))
 from exr import read_exr
-from measure import series_error, use
+from measure import counted_work, series_error, use
 
 SCENES = ("smoke_room", "fog_grille")
 LAYERS = ("", "single_scattering", "multiple_scattering_bounded", "direct", "indirect_bounded")
-WORK = {"closest": 1.0, "occlusion": 0.5, "boundary": 0.5}  # as counted_work.cpp has them; of lookups below
-LOOKUP = 1 / 32
 
 
 def run(args, scene, integrator, more, folder):
@@ -44,8 +42,7 @@ def render(args, scene, points, seed, folder):
                                                f"integrator.scattering_points={points}", "--passes", args.passes,
                                                "--seed", seed], folder)
     width, height = args.size.split("x")
-    work = sum(WORK[k] * s["rays"].get(k, 0) for k in WORK) + LOOKUP * s["lookups"].get("density", 0)
-    return picture, work / (args.passes * int(width) * int(height)), s["seconds"]["render"]
+    return picture, counted_work(s) / (args.passes * int(width) * int(height)), s["seconds"]["render"]
 
 
 def measure(args, scene, points, reference, folder):

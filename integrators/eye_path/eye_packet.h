@@ -130,6 +130,7 @@ class EyePacket {
         });
         return any;
     }
+
     /// Returns false where no path was alive.
     template <typename OnSegment>
     bool advance(const OnSegment& on_segment) {

@@ -1,8 +1,8 @@
 // Several samples of lights at one vertex, and how many.
 //
-// Light of the first two vertices is most of a picture's noise, and shadow rays take less time than the rest
-// of a path. n samples of density p_i each are weighted as one technique of density n p_i (Veach 1997,
-// Eq. 9.8), and added up.
+// At the first two vertices of a path they lower a picture's error by more than their shadow rays cost, at
+// later ones by less. n samples of density p_i each are weighted as one technique of density n p_i (Veach
+// 1997, Eq. 9.8), and added up.
 #pragma once
 
 #include <algorithm>

@@ -29,8 +29,6 @@ void check_equal(const std::string& xml, const std::string& reference, const std
     CHECK_FALSE(same_mean(ours.scaled(1.06), "beauty", truth, "beauty", OnFailure::nothing).passed);
 }
 
-std::string with(std::string xml, const std::string& more) { return xml.insert(xml.find("<sensor"), more); }
-
 const std::string balls = R"(
     <shape type="sphere"><point name="center" x="-0.35" y="-0.4" z="0.2"/><float name="radius" value="0.35"/>
         <bsdf type="roughdielectric"><float name="alpha" value="0.4"/></bsdf></shape>

@@ -211,10 +211,6 @@ Comparison compare(const core::Scene& scene, Heuristic heuristic, Planted plante
     return result;
 }
 
-std::string with_lamps(std::string xml, const std::string& more) {
-    return xml.insert(xml.find("<sensor"), more);
-}
-
 const std::string glass_and_mirror = R"(
     <shape type="sphere"><point name="center" x="-0.35" y="-0.4" z="0.2"/><float name="radius" value="0.35"/>
         <bsdf type="dielectric"/></shape>
@@ -241,7 +237,7 @@ void report(const Comparison& c) {
 TEST_CASE("the weights of every path add up to 1 over its techniques", "[bdpt][weights]") {
     for (const std::string& wall : {grey, glossy, mixed})
         for (const Heuristic heuristic : {Heuristic::power, Heuristic::balance}) {
-            const auto scene = scene_from(with_lamps(box(wall, ""), glass_and_mirror + lamps));
+            const auto scene = scene_from(with(box(wall, ""), glass_and_mirror + lamps));
             const Comparison c = compare<false>(*scene, heuristic);
             report(c);
             CHECK(c.paths > 600);
@@ -256,7 +252,7 @@ TEST_CASE("the weights of every path add up to 1 in media", "[bdpt][weights]") {
     for (const std::string& medium :
          {fog("0.6, 0.9, 1.2", R"(<phase type="hg"><float name="g" value="0.6"/></phase>)"),
           smoke_medium(folder.file("smoke.vol"))}) {
-        const auto scene = scene_from(with_lamps(box(grey, medium), glass_and_mirror + lamps));
+        const auto scene = scene_from(with(box(grey, medium), glass_and_mirror + lamps));
         // A grid's marching steps are rounded from either end of an edge.
         const Comparison c = compare<true>(*scene, Heuristic::power, Planted::none, 300, 1e-5);
         report(c);
@@ -274,7 +270,7 @@ TEST_CASE("the weights of every path add up to 1 through rough glass with fog in
         <float name="radius" value="0.5"/><bsdf type="roughdielectric"><float name="alpha" value="0.5"/></bsdf>)" +
                              fog("3, 4, 5", R"(<phase type="hg"><float name="g" value="0.6"/></phase>)") +
                              "</shape>";
-    const auto scene = scene_from(with_lamps(box(grey, ""), ball + lamps));
+    const auto scene = scene_from(with(box(grey, ""), ball + lamps));
     const Comparison c = compare<true>(*scene, Heuristic::power, Planted::none, 800, 1e-5);
     report(c);
     CHECK(c.paths > 600);
@@ -324,7 +320,7 @@ TEST_CASE("the weights of every path add up to 1 for every camera", "[bdpt][weig
 }
 
 TEST_CASE("wrong densities are found by the weights", "[bdpt][weights][planted]") {
-    const auto scene = scene_from(with_lamps(box(mixed, ""), lamps));
+    const auto scene = scene_from(with(box(mixed, ""), lamps));
     for (const Planted planted : {Planted::reverse, Planted::measure, Planted::light})
         CHECK(compare<false>(*scene, Heuristic::power, planted).wrong > 100);
 }

@@ -15,20 +15,10 @@ namespace {
 /// The box without its lamp: a small glowing cube above the floor is the only light. With `fog` around it or
 /// not.
 std::string glow(bool heterogeneous, bool fog) {
-    const std::string medium =
-        heterogeneous
-            ? R"(<medium type="heterogeneous" name="interior"><volume name="sigma_t" type="constvolume">
-            <rgb name="value" value="1, 2, 4"/></volume><rgb name="albedo" value="0.3, 0.5, 0.7"/>
-            <rgb name="Le" value="30, 40, 50"/></medium>)"
-            : R"(<medium type="homogeneous" name="interior"><rgb name="sigma_t" value="1, 2, 4"/>
-            <rgb name="albedo" value="0.3, 0.5, 0.7"/><rgb name="Le" value="30, 40, 50"/></medium>)";
     std::string xml = box(grey, fog ? mote::tests::fog("0.5, 0.4, 0.3", "") : "");
     const auto lamp = xml.find("<emitter type=\"area\">");
     xml.erase(lamp, xml.find("</emitter>", lamp) + 10 - lamp);
-    const std::string cube = R"(<shape type="cube"><transform name="to_world"><scale value="0.2"/>
-        <rotate y="1" angle="30"/><translate x="-0.35" y="-0.5" z="0.2"/></transform><bsdf type="null"/>)" +
-                             medium + "</shape>";
-    return xml.insert(xml.find("<sensor"), cube);
+    return with(xml, glowing_cube(heterogeneous));
 }
 
 RenderStatistics render(const std::string& xml, const std::string& integrator, std::uint32_t passes,

@@ -2,14 +2,11 @@
 // is the same for any number.
 #include "integrators/eye_path/light_samples.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <set>
 
 #include "core/render/render_driver.h"
-#include "integrators/eye_path/image_loop.h"
-#include "integrators/path_tracing/trace_paths.h"
+#include "tests/integrators/paths_of_a_pass.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
@@ -28,12 +25,7 @@ const std::string ball_light =
     R"(<shape type="sphere"><float name="radius" value="0.15"/><point name="center" x="-0.4" y="-0.3" z="0.3"/>
     <emitter type="area"><rgb name="radiance" value="5, 4, 3"/></emitter></shape>)";
 
-std::string with(const std::string& xml, const std::string& more) {
-    std::string text = xml;
-    return text.insert(text.find("<sensor"), more);
-}
-
-/// Light of the whole picture by layer: sums over passes of a pass's mean, and of its square.
+/// Light of the whole picture by layer.
 struct Light {
     std::array<double, transport_count> mean{}, variance{};  ///< of the mean over passes
 };
@@ -55,15 +47,10 @@ Light light_of(const Scene& scene, const LightSamples& samples, std::uint64_t se
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         const PassContext context{pass, *filter, cancelled};
         std::array<double, transport_count> sums{};
-        for (int first = 0; first < pixels; first += EyePacket<Media>::width) {
-            for (int i = 0; i < EyePacket<Media>::width; ++i)
-                packet->start(i,
-                              make_eye_ray(scene, options, context, (first + i) % size, (first + i) / size));
-            trace_paths(scene, settings, *packet);
-            for (int i = 0; i < EyePacket<Media>::width; ++i)
-                for (std::size_t l = 0; l < transport_count; ++l)
-                    sums[l] += double(average((*packet)[i].sum.light[l])) / pixels;
-        }
+        for_each_path(scene, settings, options, context, *packet, [&](int, const TransportSum& sum) {
+            for (std::size_t l = 0; l < transport_count; ++l)
+                sums[l] += double(average(sum.light[l])) / pixels;
+        });
         for (std::size_t l = 0; l < transport_count; ++l)
             light.mean[l] += sums[l] / passes, squares[l] += sqr(sums[l]) / passes;
     }
@@ -72,12 +59,12 @@ Light light_of(const Scene& scene, const LightSamples& samples, std::uint64_t se
     return light;
 }
 
-/// Two-sided tests of every layer at a level of 1 % for the three comparisons of two scenes' five layers.
+/// Two-sided tests of every layer at a level of 1 % for the three comparisons of three scenes' five layers.
 template <bool Media>
 void check_same_light(const std::string& xml) {
     const auto scene = scene_from(xml, 8);
     const Light one = light_of<Media>(*scene, {1, 1}, 1);
-    constexpr double critical_z = 4.0;  // 30 tests of 6e-5
+    constexpr double critical_z = 4.0;  // 45 tests of 6e-5
     for (const LightSamples& samples : {LightSamples{2, 2}, LightSamples{3, 1}, LightSamples{1, 5}}) {
         const Light more = light_of<Media>(*scene, samples, 2);
         for (std::size_t l = 0; l < transport_count; ++l) {
@@ -150,10 +137,5 @@ TEST_CASE("any number of samples of lights has the same light", "[integrators][l
     check_same_light<true>(
         with(box(glossy, fog("0.9, 0.7, 0.5", R"(<phase type="hg"><float name="g" value="0.7"/></phase>)")),
              point_light + ball_light + sky));
-    const std::string glow = R"(<shape type="cube"><transform name="to_world"><scale value="0.2"/>
-        <translate x="-0.35" y="-0.5" z="0.2"/></transform><bsdf type="null"/>
-        <medium type="heterogeneous" name="interior"><volume name="sigma_t" type="constvolume">
-        <rgb name="value" value="1, 2, 4"/></volume><rgb name="albedo" value="0.3, 0.5, 0.7"/>
-        <rgb name="Le" value="30, 40, 50"/></medium></shape>)";
-    check_same_light<true>(with(box(grey, fog("0.5, 0.4, 0.3", "")), glow));
+    check_same_light<true>(with(box(grey, fog("0.5, 0.4, 0.3", "")), glowing_cube(true)));
 }

@@ -44,6 +44,11 @@ inline std::string box(const std::string& wall, const std::string& medium) {
     return xml;
 }
 
+/// The scene with more shapes and lights.
+inline std::string with(std::string xml, const std::string& more) {
+    return xml.insert(xml.find("<sensor"), more);
+}
+
 /// The scene with another sensor in place of its own.
 inline std::string with_sensor(std::string xml, const std::string& sensor) {
     const auto from = xml.find("<sensor"), to = xml.find("</sensor>");
@@ -113,6 +118,20 @@ inline std::string smoke_medium(const std::string& path) {
         <transform name="to_world"><translate x="-0.5" y="-0.5" z="-0.5"/><scale value="2"/></transform></volume>
         <volume name="albedo" type="constvolume"><rgb name="value" value="0.9, 0.8, 0.7"/></volume></medium>)",
                        path);
+}
+
+/// A small glowing cube above the floor of the box.
+inline std::string glowing_cube(bool heterogeneous) {
+    const std::string medium =
+        heterogeneous
+            ? R"(<medium type="heterogeneous" name="interior"><volume name="sigma_t" type="constvolume">
+            <rgb name="value" value="1, 2, 4"/></volume><rgb name="albedo" value="0.3, 0.5, 0.7"/>
+            <rgb name="Le" value="30, 40, 50"/></medium>)"
+            : R"(<medium type="homogeneous" name="interior"><rgb name="sigma_t" value="1, 2, 4"/>
+            <rgb name="albedo" value="0.3, 0.5, 0.7"/><rgb name="Le" value="30, 40, 50"/></medium>)";
+    return R"(<shape type="cube"><transform name="to_world"><scale value="0.2"/>
+        <rotate y="1" angle="30"/><translate x="-0.35" y="-0.5" z="0.2"/></transform><bsdf type="null"/>)" +
+           medium + "</shape>";
 }
 
 /// Choices by which pictures are quick: a trial takes longer than a few passes of few pixels.

@@ -5,6 +5,7 @@
 #include "core/render/render_driver.h"
 #include "integrators/path_tracing/guided_paths.h"
 #include "integrators/path_tracing/wavefront.h"
+#include "tests/integrators/paths_of_a_pass.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 
@@ -18,10 +19,7 @@ namespace {
 constexpr int size = 16, pixels = size * size, passes = 16;
 
 /// A room of several materials with a lamp, more lights, and a ball with smooth normals' frame.
-std::string furnished(const std::string& wall, const std::string& more) {
-    std::string xml = box(wall, "");
-    return xml.insert(xml.find("<sensor"), more);
-}
+std::string furnished(const std::string& wall, const std::string& more) { return with(box(wall, ""), more); }
 
 const std::string glass_ball = R"(<shape type="sphere"><float name="radius" value="0.3"/>
     <point name="center" x="-0.4" y="-0.6" z="0.1"/><bsdf type="dielectric"/></shape>)";
@@ -69,16 +67,13 @@ Comparison compare(const Scene& scene, const EyePathLimits& limits, const lights
     Comparison found;
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         const PassContext context{pass, *filter, cancelled};
-        const auto eye = [&](int i) { return make_eye_ray(scene, options, context, i % size, i / size); };
         wavefront->clear();
-        for (int i = 0; i < pixels; ++i) wavefront->start(eye(i));
+        for (int i = 0; i < pixels; ++i)
+            wavefront->start(make_eye_ray(scene, options, context, i % size, i / size));
         wavefront->run();
-        for (int first = 0; first < pixels; first += EyePacket<false>::width) {
-            for (int i = 0; i < EyePacket<false>::width; ++i) packet->start(i, eye(first + i));
-            trace_paths(scene, settings, *packet);
-            for (int i = 0; i < EyePacket<false>::width; ++i)
-                compare_sums(wavefront->sum(first + i), (*packet)[i].sum, found);
-        }
+        for_each_path(scene, settings, options, context, *packet, [&](int pixel, const TransportSum& sum) {
+            compare_sums(wavefront->sum(pixel), sum, found);
+        });
     }
     return found;
 }

@@ -17,7 +17,6 @@ const std::string lamps = R"(
     <emitter type="spot"><transform name="to_world"><lookat origin="-0.6, 0.7, 1.7" target="0, -0.4, 0" up="0, 0, 1"/>
         </transform><rgb name="intensity" value="40, 30, 20"/></emitter>)";
 
-std::string with(std::string xml, const std::string& more) { return xml.insert(xml.find("<sensor"), more); }
 std::string without_area_light(std::string xml) {
     const auto lamp = xml.find("<emitter type=\"area\">");
     return xml.erase(lamp, xml.find("</emitter>", lamp) + 10 - lamp);
