@@ -13,10 +13,11 @@ double of(const Counts& counts, const char* name) {
 }  // namespace
 
 double counted_work(const Statistics& s) {
-    const double rays = of(s.rays, "closest") + 0.5 * of(s.rays, "occlusion") + 0.5 * of(s.rays, "boundary");
+    const double rays =
+        of(s.rays, "closest") + work_of_occlusion * (of(s.rays, "occlusion") + of(s.rays, "boundary"));
     const double lookups =
         of(s.lookups, "density") + 2.0 * of(s.lookups, "shadow_maps") + of(s.values, "march_steps");
-    return rays + lookups / 32.0;
+    return rays + work_of_lookup * lookups;
 }
 
 }  // namespace mote::core

@@ -12,6 +12,7 @@
 
 #include <cmath>
 
+#include "core/render/counted_work.h"
 #include "integrators/bidirectional/strategies.h"
 
 namespace mote::integrators {
@@ -25,13 +26,14 @@ struct TechniqueWork {
 
     /// A query that tested so many vertices or pieces of beams, and found so many merges.
     void add_query(Merge technique, std::size_t tested, std::size_t found, std::uint64_t lookups) {
-        const double looked_up = 0.25 * double(lookups);
+        const double looked_up = core::work_of_lookup * double(lookups);
         queries[std::size_t(technique)] += 0.5;
         finds[std::size_t(technique)] += 0.1 * double(tested) + 1.25 * double(found) + looked_up;
         of_pass += looked_up, merges += found;
     }
     void add(const ConnectionCounts& c) {
-        const double tests = 0.5 * double(c.rays) + 0.25 * double(c.lookups);
+        const double tests =
+            core::work_of_occlusion * double(c.rays) + core::work_of_lookup * double(c.lookups);
         finds[by_connection] += 0.1 * double(c.pairs) + tests, of_pass += tests;
     }
     void add(const TechniqueWork& other) {

@@ -7,6 +7,7 @@
 #include "integrators/upbp/effort_trials.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace mote;
 using namespace mote::core;
@@ -188,6 +189,24 @@ TEST_CASE("A trial predicts the variance of a pass", "[upbp][statistics]") {
         CHECK(std::fabs(z(predicted, measured)) < 3.5);
         if (efforts != integrators::full_efforts) CHECK(std::fabs(z(planted, measured)) > 3.5);
     }
+}
+
+TEST_CASE("What a trial counts of paths is without their merges and connections", "[upbp]") {
+    const TemporaryFolder folder;
+    const auto scene = scene_from(box(grey, smoke_medium(folder.file("smoke.vol"))), edge);
+    const RenderOptions options{.seed = 1, .width = edge, .height = edge};
+    integrators::UpbpSettings settings;
+    settings.radius = 0.3;
+    const auto trial = [&] { return integrators::trial_of_efforts<true>(*scene, options, settings); };
+    const integrators::Trial all = trial();
+    settings.connections = settings.point_point = settings.point_beam = settings.beam_beam = false;
+    const integrators::Trial few = trial();
+    INFO(all.work_of_paths << " beside " << all.work.of_pass << ", " << few.work_of_paths << " beside "
+                           << few.work.of_pass);
+    CHECK(all.work.of_pass > 2.0 * few.work.of_pass);
+    REQUIRE(few.work_of_paths > 0.0);
+    // The mean of 2048 paths whose work spreads by half of it, in both: three standard deviations.
+    CHECK(all.work_of_paths == Approx(few.work_of_paths).epsilon(0.05));
 }
 
 TEST_CASE("Efforts change no mean", "[upbp][statistics]") {
