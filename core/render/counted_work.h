@@ -9,7 +9,7 @@
 
 namespace mote::core {
 
-inline constexpr double work_of_occlusion = 0.5;      ///< of a shadow ray [closest hits]
+inline constexpr double work_of_occlusion = 0.5;      ///< of a shadow ray, or to boundaries [closest hits]
 inline constexpr double work_of_lookup = 1.0 / 32.0;  ///< of a density [closest hits]
 
 /// [closest hits]

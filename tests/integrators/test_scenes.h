@@ -49,6 +49,12 @@ inline std::string with(std::string xml, const std::string& more) {
     return xml.insert(xml.find("<sensor"), more);
 }
 
+/// The scene without its lamp, whose rectangle stays.
+inline std::string without_area_light(std::string xml) {
+    const auto lamp = xml.find("<emitter type=\"area\">");
+    return xml.erase(lamp, xml.find("</emitter>", lamp) + 10 - lamp);
+}
+
 /// The scene with another sensor in place of its own.
 inline std::string with_sensor(std::string xml, const std::string& sensor) {
     const auto from = xml.find("<sensor"), to = xml.find("</sensor>");

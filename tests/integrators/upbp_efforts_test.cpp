@@ -205,8 +205,8 @@ TEST_CASE("What a trial counts of paths is without their merges and connections"
                            << few.work.of_pass);
     CHECK(all.work.of_pass > 2.0 * few.work.of_pass);
     REQUIRE(few.work_of_paths > 0.0);
-    // The mean of 2048 paths whose work spreads by half of it, in both: three standard deviations.
-    CHECK(all.work_of_paths == Approx(few.work_of_paths).epsilon(0.05));
+    // A trial errs by 1.0 % (24 seeds): three standard deviations of the difference of two.
+    CHECK(all.work_of_paths == Approx(few.work_of_paths).epsilon(0.04));
 }
 
 TEST_CASE("Efforts change no mean", "[upbp][statistics]") {

@@ -107,11 +107,8 @@ TEST_CASE("maps of the lights leave single scattering as it is", "[vpl][shadow_m
         R"(<emitter type="directional"><vector name="direction" x="-0.3" y="-0.5" z="-1"/></emitter>)"};
     const TemporaryFolder folder;
     for (const std::string& light : lights) {
-        std::string xml = box(grey, smoke_medium(folder.file("smoke.vol")));
-        const auto lamp = xml.find("<emitter type=\"area\">");
-        const std::string end = "</emitter>";
-        xml.erase(lamp, xml.find(end) + end.size() - lamp);
-        xml.insert(xml.find("<sensor"), light);
+        const std::string xml =
+            with(without_area_light(box(grey, smoke_medium(folder.file("smoke.vol")))), light);
         const auto scene = scene_from(xml, 8);
         const auto traced = render_statistics(*scene, *vpl("", 1), {4, 1200, 5});
         const auto maps = render_statistics(*scene, *vpl(shadow_map(4, "", 96), 1), {4, 1200, 5});

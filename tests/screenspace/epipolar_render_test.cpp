@@ -17,10 +17,6 @@ const std::string lamps = R"(
     <emitter type="spot"><transform name="to_world"><lookat origin="-0.6, 0.7, 1.7" target="0, -0.4, 0" up="0, 0, 1"/>
         </transform><rgb name="intensity" value="40, 30, 20"/></emitter>)";
 
-std::string without_area_light(std::string xml) {
-    const auto lamp = xml.find("<emitter type=\"area\">");
-    return xml.erase(lamp, xml.find("</emitter>", lamp) + 10 - lamp);
-}
 const std::string thin_fog =
     fog("0.5, 0.4, 0.3", R"(<phase type="hg"><float name="g" value="0.5"/></phase>)");
 
