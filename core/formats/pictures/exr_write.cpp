@@ -7,12 +7,14 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
 #include "core/files/atomic_file.h"
@@ -82,6 +84,14 @@ Imf::Header make_header(const ImageChannels& image, bool use_half) {
     return header;
 }
 
+/// The library compresses by the threads of its pool, which is empty until someone fills it.
+void fill_pool(int threads) {
+    try {
+        if (Imf::globalThreadCount() == 0) Imf::setGlobalThreadCount(threads);
+    } catch (const std::system_error&) {  // no more threads: it writes by this one
+    }
+}
+
 std::uint64_t encode(MemoryStream& stream, const ImageChannels& image, bool use_half) {
     const Imf::Header header = make_header(image, use_half);
     const auto width = std::size_t(image.width), pixels = width * std::size_t(image.height);
@@ -107,6 +117,7 @@ std::uint64_t encode(MemoryStream& stream, const ImageChannels& image, bool use_
         }
     }
     const int threads = int(std::clamp(std::thread::hardware_concurrency(), 1u, 16u));
+    fill_pool(threads);
     Imf::OutputFile file(stream, header, threads);
     file.setFrameBuffer(frame);
     file.writePixels(image.height);
