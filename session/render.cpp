@@ -93,7 +93,8 @@ class RenderWork {
     core::RenderRequest request() {
         core::RenderRequest r;
         r.seed = settings_.seed, r.stop = settings_.stop, r.range = settings_.range;
-        r.enough = settings_.enough, r.seconds_before = settings_.seconds_before;
+        r.enough = settings_.enough;
+        r.seconds_before = settings_.seconds_before, r.seconds_after = settings_.seconds_after;
         if (settings_.begin_with) r.begin_with = settings_.begin_with->film.get();
         r.checkpoint_path = settings_.checkpoint, r.checkpoint_every_seconds = settings_.checkpoint_every;
         r.checkpoint_at_end = settings_.keep_checkpoint, r.resume = settings_.resume;

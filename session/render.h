@@ -58,9 +58,11 @@ struct FrameBefore {
 /// When a render ends, and what it makes.
 struct RenderSettings {
     std::uint64_t seed = 0;  ///< with scene and passes it determines every bit
-    /// Seconds count from `seconds_before` before the call on. No rule: the film's sample_count of passes.
+    /// Seconds count from `seconds_before` before the call on, until `seconds_after` after it. No rule: the
+    /// film's sample_count of passes.
     core::StopRule stop;
     double seconds_before = 0.0;  ///< [s], such as those of loading
+    double seconds_after = 0.0;   ///< that the caller will take, such as to write the picture, about [s]
     /// A further rule, evaluated where the noise rule is, in the thread of the passes; may be empty.
     std::function<bool(const core::Film&)> enough;
     std::optional<core::PassRange>

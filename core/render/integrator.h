@@ -100,8 +100,8 @@ class Estimator {
         finish(film, cancelled);
         return true;
     }
-    /// Wall time that finish() will take, where earlier calls have shown it [s]; nothing: about that of the
-    /// last preview.
+    /// Wall time that finish() will take after another pass, where earlier calls have shown it [s]; nothing:
+    /// about that of the last preview.
     virtual std::optional<double> seconds_to_finish(const Film& /*film*/) const { return std::nullopt; }
     /// True if finish() sets what it leaves of the variance (Film::set_mean, Film::set_halves): then the
     /// noise is that of the finished picture.

@@ -34,7 +34,7 @@ class PassLoop {
     PassLoop(const RenderRequest& request, const StopRule& stop, PassRunner& runner, RenderResult& result)
         : request_(request), stop_(stop), runner_(runner), result_(result) {
         state_.passes = result.film.pass_count();
-        state_.seconds_before = request.seconds_before + runner.build_seconds();
+        state_.seconds_beside = request.seconds_before + runner.build_seconds() + request.seconds_after;
     }
 
     void run() {

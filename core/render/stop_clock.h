@@ -16,7 +16,8 @@ struct RenderState {
     double seconds = 0.0, noise = 0.0;
     PictureError error = {};           ///< for StopRule::error
     double seconds_of_previews = 0.0;  ///< among `seconds`: passes take the others
-    double seconds_before = 0.0;     ///< of loading and building: they count for the time, not for the speed
+    /// Of loading and building before, and writing after: they count for the time, not for the speed.
+    double seconds_beside = 0.0;
     double seconds_to_finish = 0.0;  ///< that Estimator::finish() will take, as far as previews have shown it
     double seconds_per_pass() const {
         return passes_of_this_run > 0 ? (seconds - seconds_of_previews) / passes_of_this_run : 0.0;
@@ -44,7 +45,7 @@ inline bool must_stop(const StopRule& rule, const RenderState& state) {
     // One more pass would end farther from the wanted time than none, or more than a second behind it.
     const double pass = state.seconds_per_pass(), late = std::min(0.5 * pass, max_seconds_late);
     if (rule.seconds && state.passes_of_this_run > 0 &&
-        state.seconds_before + state.seconds + pass - late + state.seconds_to_finish >= *rule.seconds)
+        state.seconds_beside + state.seconds + pass - late + state.seconds_to_finish >= *rule.seconds)
         return true;
     if (state.passes < noise_rule_from) return false;
     return (rule.noise && state.noise <= *rule.noise) || (rule.error && state.error.rule_high <= *rule.error);
@@ -57,7 +58,7 @@ inline double seconds_left(const StopRule& rule, const RenderState& state) {
     if (rule.passes && per_pass > 0.0)
         left = std::min(left, per_pass * (*rule.passes - std::min(state.passes, *rule.passes)));
     if (rule.seconds)
-        left = std::min(left, std::max(0.0, *rule.seconds - state.seconds_before - state.seconds -
+        left = std::min(left, std::max(0.0, *rule.seconds - state.seconds_beside - state.seconds -
                                                 state.seconds_to_finish));
     if (rule.noise && std::isfinite(state.noise) && per_pass > 0.0) {
         // The noise falls as 1 / sqrt(passes).

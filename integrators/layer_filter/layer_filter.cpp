@@ -32,26 +32,21 @@ constexpr double work_of_fine = 300.0;
 /// With fewer, noise of quarters costs what their detail gains; and with a few, many have no sample, and
 /// OpenImageDenoise takes what fills them for detail.
 constexpr std::uint32_t passes_of_fine = 32;
-/// Time of full features over that of rough ones (5 to 8), and of those of quarters over full ones (1
-/// to 1.5).
-constexpr double full_per_rough = 6.5, quarters_per_full = 1.4;
+/// Time to find full features over that of rough ones (3 to 4.5), runs that denoise them, and time of those
+/// of quarters over full ones (1 to 1.5).
+constexpr double full_per_rough = 4.0, runs_of_features = 3.0, quarters_per_full = 1.4;
 constexpr double runs_of_fine = 4.0;  ///< time of a layer's quarters over that of its pixels
 
-double work_of_pixel(const Film& film) {
+/// `more`: passes to come, of the mean work.
+double work_of_pixel(const Film& film, std::uint32_t more = 0) {
     double work = 0.0;
     for (std::size_t part = 0; part < film.parts(); ++part) work += film.work(part);
-    return work / double(film.pixels());
+    const double passes = std::max(film.pass_count(), 1u);
+    return work * (1.0 + more / passes) / double(film.pixels());
 }
 
-bool shows_shafts(const Film& film, const LayerFilter::Choice& choice) {
-    return choice.kind == screenspace::LayerKind::volume &&
-           film.layers()[choice.layer].transport != Transport::multiple_scattering;
-}
-
-screenspace::LayerToFilter to_filter(const Film& film, const LayerFilter::Choice& choice,
-                                     const LayerOfPasses& layer) {
-    return {layer.mean, layer.variance, choice.kind, screenspace::FilterQuality::full,
-            shows_shafts(film, choice)};
+screenspace::LayerToFilter to_filter(const LayerFilter::Choice& choice, const LayerOfPasses& layer) {
+    return {layer.mean, layer.variance, choice.kind};
 }
 
 LayerOfPasses of_half(const Film& film, std::size_t layer, int half) {
@@ -166,7 +161,7 @@ void LayerFilter::apply_to_halves(Film& film, const Choice& choice, CancelToken 
     std::array<std::vector<Rgb>, 2> shown;
     for (const int half : {0, 1}) {
         const LayerOfPasses layer = of_half(film, choice.layer, half);
-        shown[std::size_t(half)] = filter_->filtered(to_filter(film, choice, layer), cancelled).mean;
+        shown[std::size_t(half)] = filter_->filtered(to_filter(choice, layer), cancelled).mean;
     }
     film.set_halves(choice.layer, std::move(shown));
 }
@@ -178,6 +173,7 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
     if (layers_.empty() || (!library_ && !film.has_passes(2))) return;
     variances_.clear();
     find_features(film, cancelled);
+    find_noise_free(film);
     if (joins_layers(film)) {
         apply_to_sums(film, screenspace::FilterQuality::full, cancelled);
         return;
@@ -199,27 +195,32 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
     filter_->release();
     if (fine_) fine_->release();
     filter_seconds_ += seconds;
-    seconds_per_run_ = seconds / runs(film);
+    if (const double count = runs(film); count > 0.0)
+        seconds_per_run_ = seconds / (count * time_of_run(film));
 }
 
-bool LayerFilter::is_fine(const Film& film, std::size_t layer) const {
-    return library_ && film.pass_count(film.layers()[layer].part) >= passes_of_fine &&
-           work_of_pixel(film) >= work_of_fine && film.fine_sums(layer).has_light();
+bool LayerFilter::is_fine(const Film& film, std::size_t layer, std::uint32_t more) const {
+    return library_ && film.pass_count(film.layers()[layer].part) + more >= passes_of_fine &&
+           work_of_pixel(film, more) >= work_of_fine && film.fine_sums(layer).has_light();
 }
 
-bool LayerFilter::needs_quarters(const Film& film) const {
-    return !fine_ && !joins_layers(film) &&
-           std::ranges::any_of(layers_, [&](const Choice& choice) { return is_fine(film, choice.layer); });
+bool LayerFilter::needs_quarters(const Film& film, std::uint32_t more) const {
+    return !fine_ && !joins_layers(film, more) && std::ranges::any_of(layers_, [&](const Choice& choice) {
+        return is_fine(film, choice.layer, more);
+    });
 }
 
-bool LayerFilter::takes_full_features(const Film& film) const {
-    return !library_ || work_of_pixel(film) >= work_of_features;
+bool LayerFilter::takes_full_features(const Film& film, std::uint32_t more) const {
+    return !library_ || work_of_pixel(film, more) >= work_of_features;
 }
 
-double LayerFilter::seconds_to_find_features(const Film& film) const {
-    const bool finds_full = takes_full_features(film) && found_quality_ != screenspace::FilterQuality::full;
-    const double full = (finds_full ? full_per_rough : 1.0) * last_feature_seconds_;
-    return (finds_full ? full : 0.0) + (needs_quarters(film) ? quarters_per_full * full : 0.0);
+double LayerFilter::seconds_to_find_features(const Film& film, std::uint32_t more) const {
+    const bool finds_full =
+        takes_full_features(film, more) && found_quality_ != screenspace::FilterQuality::full;
+    const double full = finds_full
+                            ? full_per_rough * last_feature_seconds_ + runs_of_features * seconds_per_run_
+                            : last_feature_seconds_;
+    return (finds_full ? full : 0.0) + (needs_quarters(film, more) ? quarters_per_full * full : 0.0);
 }
 
 void LayerFilter::find_quarters(const Film& film, CancelToken cancelled) {
@@ -239,19 +240,34 @@ void LayerFilter::apply_to_fine(Film& film, std::size_t layer, CancelToken cance
                                                       {coarse.mean, coarse.variance}));
 }
 
-double LayerFilter::runs(const Film& film) const {
+double LayerFilter::runs(const Film& film, std::uint32_t more) const {
     const double halves = has_halves(film) ? 2.0 : 1.0;
-    if (joins_layers(film)) return double(kinds(film).size()) * halves;
+    if (joins_layers(film, more)) return double(kinds(film).size()) * halves;
     double runs = 0.0;
     for (const Choice& choice : layers_)
-        runs += is_fine(film, choice.layer) ? runs_of_fine
-                                            : (library_ && shows_shafts(film, choice) ? 2.0 : 1.0) * halves;
+        if (std::ranges::find(noise_free_, choice.layer) == noise_free_.end())
+            runs += is_fine(film, choice.layer, more) ? runs_of_fine : halves;
     return runs;
+}
+
+double LayerFilter::time_of_run(const Film& film, std::uint32_t more) const {
+    // OpenImageDenoise has its larger network for features without noise alone.
+    return takes_full_features(film, more) ? filter_->full_per_preview() : 1.0;
+}
+
+void LayerFilter::find_noise_free(const Film& film) {
+    noise_free_.clear();
+    for (const Choice& choice : layers_) {
+        if (film.pass_count(film.layers()[choice.layer].part) < 2) continue;
+        const std::vector<Rgb> variance = film.layer_variance_of_mean(choice.layer);
+        if (std::ranges::all_of(variance, [](const Rgb& v) { return v == Rgb(0.0f); }))
+            noise_free_.push_back(choice.layer);
+    }
 }
 
 void LayerFilter::apply_to_mean(Film& film, const Choice& choice, CancelToken cancelled) {
     const LayerOfPasses layer = of_passes(film, choice.layer);
-    auto filtered = filter_->filtered(to_filter(film, choice, layer), cancelled);
+    auto filtered = filter_->filtered(to_filter(choice, layer), cancelled);
     film.set_mean(choice.layer, filtered.mean, filtered.variance);
     variances_.push_back(std::move(filtered.variance));
 }
@@ -263,8 +279,9 @@ LayerOfPasses LayerFilter::of_passes(Film& film, std::size_t layer) const {
                      : layer_of_passes(film, layer, 4, PassVariance::points);
 }
 
-bool LayerFilter::joins_layers(const Film& film) const {
-    return library_ && work_of_pixel(film) < work_of_layer * double(layers_.size() - kinds(film).size());
+bool LayerFilter::joins_layers(const Film& film, std::uint32_t more) const {
+    return library_ &&
+           work_of_pixel(film, more) < work_of_layer * double(layers_.size() - kinds(film).size());
 }
 
 std::vector<LayerFilter::Kind> LayerFilter::kinds(const Film& film) const {
@@ -273,7 +290,7 @@ std::vector<LayerFilter::Kind> LayerFilter::kinds(const Film& film) const {
     // as one they have 1.4 times the squared error (fog, 4 passes).
     const auto group_of = [&](const Choice& choice) {
         if (choice.kind == screenspace::LayerKind::surface) return 0;
-        return shows_shafts(film, choice) ? 1 : 2;
+        return film.layers()[choice.layer].transport == Transport::multiple_scattering ? 2 : 1;
     };
     for (const int group : {0, 1, 2}) {
         Kind found{group == 0 ? screenspace::LayerKind::surface : screenspace::LayerKind::volume, {}};
@@ -295,8 +312,8 @@ void LayerFilter::apply_to_sums(Film& film, screenspace::FilterQuality quality, 
     filter_->release();
     filter_seconds_ += seconds;
     const double count = double(all.size()) * (has_halves(film) ? 2.0 : 1.0);
-    const double full = quality == screenspace::FilterQuality::full ? 1.0 : filter_->full_per_preview();
-    if (count > 0.0) seconds_per_run_ = full * seconds / count;
+    const double time = quality == screenspace::FilterQuality::full ? time_of_run(film) : 1.0;
+    if (count > 0.0) seconds_per_run_ = seconds / (count * time);
 }
 
 bool LayerFilter::apply_for_preview(Film& film, CancelToken cancelled) {
@@ -305,6 +322,7 @@ bool LayerFilter::apply_for_preview(Film& film, CancelToken cancelled) {
         return true;
     }
     find_features(film, cancelled);
+    find_noise_free(film);
     apply_to_sums(film, screenspace::FilterQuality::preview, cancelled);
     return false;
 }

@@ -54,9 +54,9 @@ class LayerFilter {
     /// apply() for a preview: OpenImageDenoise takes sums always, and quickly. Returns true where it is the
     /// same: for our own filter.
     bool apply_for_preview(core::Film& film, core::CancelToken cancelled = {});
-    /// Wall time of apply(), by that of the last call of either [s].
+    /// Wall time of apply() after another pass, by that of the last call of either [s].
     double seconds_to_apply(const core::Film& film) const {
-        return seconds_to_find_features(film) + seconds_per_run_ * runs(film);
+        return seconds_to_find_features(film, 1) + seconds_per_run_ * time_of_run(film, 1) * runs(film, 1);
     }
 
     const std::vector<Choice>& layers() const { return layers_; }
@@ -82,7 +82,8 @@ class LayerFilter {
         std::vector<std::size_t> layers;
     };
     std::vector<Kind> kinds(const core::Film& film) const;
-    bool joins_layers(const core::Film& film) const;
+    // `more`: passes to come.
+    bool joins_layers(const core::Film& film, std::uint32_t more = 0) const;
     /// Its variance is used from two passes on, or four: around a bright pixel that one of two passes has,
     /// the layer by OpenImageDenoise differs from the mean by more than the noise of the dark pixels there,
     /// and would be mixed with it in rings.
@@ -90,15 +91,18 @@ class LayerFilter {
     /// Features of the quality that the film's work is worth.
     void find_features(const core::Film& film, core::CancelToken cancelled);
     /// True for a layer that is denoised at twice the resolution, in films of whole passes.
-    bool is_fine(const core::Film& film, std::size_t layer) const;
+    bool is_fine(const core::Film& film, std::size_t layer, std::uint32_t more = 0) const;
     /// True where layers are, and the features of quarters are not found yet.
-    bool needs_quarters(const core::Film& film) const;
-    bool takes_full_features(const core::Film& film) const;
-    double seconds_to_find_features(const core::Film& film) const;
+    bool needs_quarters(const core::Film& film, std::uint32_t more = 0) const;
+    bool takes_full_features(const core::Film& film, std::uint32_t more = 0) const;
+    double seconds_to_find_features(const core::Film& film, std::uint32_t more) const;
+    void find_noise_free(const core::Film& film);
     void find_quarters(const core::Film& film, core::CancelToken cancelled);
     void apply_to_fine(core::Film& film, std::size_t layer, core::CancelToken cancelled);
+    /// Time of a run at full quality over that of one for a preview.
+    double time_of_run(const core::Film& film, std::uint32_t more = 0) const;
     /// Time of apply() in that of one layer.
-    double runs(const core::Film& film) const;
+    double runs(const core::Film& film, std::uint32_t more = 0) const;
     void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_mean(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_sums(core::Film& film, screenspace::FilterQuality quality, core::CancelToken cancelled);
@@ -117,8 +121,9 @@ class LayerFilter {
     screenspace::FilterQuality found_quality_ = screenspace::FilterQuality::full;  ///< of the features
     std::vector<std::vector<float>> variances_;
     double feature_seconds_ = 0.0, filter_seconds_ = 0.0;
-    double last_feature_seconds_ = 0.0;  ///< of the features that there are, without those of quarters
-    double seconds_per_run_ = 0.0;       ///< of the filter at full quality, by the last call
+    double last_feature_seconds_ = 0.0;    ///< of the features that there are, without those of quarters
+    double seconds_per_run_ = 0.0;         ///< of the filter for a preview, by the last call
+    std::vector<std::size_t> noise_free_;  ///< layers that the last call has left as they are
 };
 
 }  // namespace mote::integrators

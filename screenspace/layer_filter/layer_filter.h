@@ -35,7 +35,6 @@ struct LayerToFilter {
     std::span<const core::Rgb> variance;  ///< of that mean
     LayerKind kind = LayerKind::surface;
     FilterQuality quality = FilterQuality::full;
-    bool shafts = false;  ///< light that media scatter once
 };
 
 struct FilteredLayer {

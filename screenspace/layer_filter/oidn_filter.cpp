@@ -44,15 +44,9 @@ class OidnFilter final : public ViewFilter {
         const std::vector<Rgb>& albedo = surface ? reflected_ : scattering_;
         const auto quality = layer.quality == FilterQuality::full ? OidnLibrary::Quality::high
                                                                   : OidnLibrary::Quality::balanced;
-        const auto by_normals = [&](const std::vector<Rgb>& normal) {
-            return by_network({width_, height_, colour, albedo, normal, clean_features_, quality});
-        };
-        // Normals of surfaces behind a medium mislead; but before a grille they show where shafts begin.
-        std::vector<Rgb> denoised = by_normals(surface ? normal_ : no_normal_);
-        if (layer.shafts && layer.quality == FilterQuality::full) {
-            const std::vector<Rgb> other = by_normals(normal_);
-            for (std::size_t p = 0; p < denoised.size(); ++p) denoised[p] = 0.5f * (denoised[p] + other[p]);
-        }
+        // Normals of surfaces behind a medium mislead.
+        const std::vector<Rgb> denoised = by_network(
+            {width_, height_, colour, albedo, surface ? normal_ : no_normal_, clean_features_, quality});
         result.mean = mixed_with_mean(width_, height_, denoised, layer);
         return result;
     }

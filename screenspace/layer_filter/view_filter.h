@@ -17,7 +17,7 @@ class ViewFilter {
     virtual FilteredLayer filtered(const LayerToFilter& layer, core::CancelToken cancelled) = 0;
     /// Frees what filtered() keeps for the next layer.
     virtual void release() {}
-    /// Time of a layer at full quality over that for a preview, about.
+    /// Time of a layer at full quality over that for a preview, about, where features have no noise.
     virtual double full_per_preview() const { return 1.0; }
 };
 
@@ -33,9 +33,8 @@ std::vector<core::Rgb> mixed_with_mean(int width, int height, std::span<const co
 /// OpenImageDenoise, combined with the noisy mean as far as that shows more than noise (variance_blend.h):
 /// with many passes the picture converges to the mean. At full `quality` the features are denoised first, so
 /// that lenses and edges leave no noise in them; for a preview the network takes them for noisy. Light of
-/// media is denoised without normals, shafts as the mean of that and of a run with them. A
-/// layer without variance stays as it is. Throws InputError, here and from filtered(), where the library
-/// fails.
+/// media is denoised without normals. A layer without variance stays as it is. Throws InputError, here and
+/// from filtered(), where the library fails.
 std::unique_ptr<ViewFilter> make_oidn_filter(const FilterFeatures& features,
                                              std::shared_ptr<const OidnLibrary> library,
                                              FilterQuality quality = FilterQuality::full);

@@ -265,16 +265,45 @@ TEST_CASE(
     // Surfaces, light scattered once, and light scattered more often.
     CHECK(runs(film) == "quality 0, noisy features\n" + of(2, "quality 0, noisy features, no normals\n"));
     add_work(50.0);
-    // Each layer, those of media without normals; light that they scatter once with them, too.
+    // Each layer, those of media without normals.
     const auto each = [&](const std::string& quality) {
-        const std::string with = quality + "\n", without = quality + ", no normals\n";
-        return of(3, with) + without + with + without;
+        return of(3, quality + "\n") + of(2, quality + ", no normals\n");
     };
     CHECK(runs(film) == each("quality 0, noisy features"));
     add_work(100.0);
     CHECK(runs(film) == each("quality 0"));
     add_work(1000.0);
     CHECK(runs(film) == each("quality 0"));  // it has no quarters
+}
+
+TEST_CASE("The time of the filter is that after another pass, of layers that have noise", "[layer_filter]") {
+    const auto scene = scene_from(box(grey, ""), 16);
+    const Environment stand_in("MOTE_OIDN", MOTE_BINARY_DIR "/stand_ins");
+    // Three passes; emission has no noise.
+    const auto film_of = [](double work_of_pixel) {
+        Film film(16, 16,
+                  {{"emission", "", false, true, "", Transport::emission},
+                   {"direct", "", false, true, "", Transport::direct},
+                   {"indirect", "", false, true, "", Transport::indirect}});
+        for (std::uint32_t pass = 0; pass < 3; ++pass) {
+            PassImage image(16, 16, 3);
+            for (int i = 0; i < 256; ++i)
+                for (const std::size_t layer : {1, 2})
+                    image.at(layer, i % 16, i / 16) = Rgb(float(hash_keys(pass, i, layer) % 1000));
+            film.add_pass(image, 0, work_of_pixel * 256.0 / 3.0);
+        }
+        return film;
+    };
+    LayerFilter filter(*scene, options_of(*scene), FeatureSettings(), std::make_shared<const OidnLibrary>(),
+                       {{0, LayerKind::surface}, {1, LayerKind::surface}, {2, LayerKind::surface}});
+    Film film = film_of(20.0);
+    CHECK_FALSE(filter.apply_for_preview(film));
+    // From 30 hits a pixel on, each layer by itself; from 90 on with full features, and their network.
+    const double of_sum = filter.seconds_to_apply(film_of(22.0));
+    CHECK(of_sum > 0.0);
+    CHECK(filter.seconds_to_apply(film_of(23.0)) == Approx(2.0 * of_sum));
+    CHECK(filter.seconds_to_apply(film_of(67.0)) == Approx(2.0 * of_sum));
+    CHECK(filter.seconds_to_apply(film_of(68.0)) > OidnLibrary::high_per_balanced * 2.0 * of_sum);
 }
 
 TEST_CASE("After much work and 32 passes quarters of pixels are denoised", "[layer_filter][fine]") {

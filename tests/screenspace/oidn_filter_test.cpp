@@ -75,25 +75,23 @@ TEST_CASE("rare bright paths do not bring the noisy mean back", "[oidn_filter]")
     CHECK(mixed_with_mean(width, height, right, {mean, variance}) == right);
 }
 
-TEST_CASE("light of media is denoised without normals, shafts with and without", "[oidn_filter]") {
+TEST_CASE("light of media is denoised without normals", "[oidn_filter]") {
     const FilterView view = wall();
     const std::vector<Rgb>& mean = view.truth;
     const TemporaryFolder folder;
     const Environment named("MOTE_OIDN", stand_in), log("MOTE_STAND_IN_LOG", folder.file("log"));
     const std::vector<Rgb> variance(mean.size(), Rgb(1e12f));
-    const auto runs = [&](LayerKind kind, bool shafts, FilterQuality quality) {
+    const auto runs = [&](LayerKind kind, FilterQuality quality) {
         std::ofstream(folder.file("log"));
         const auto filter = make_oidn_filter(view.features, std::make_shared<const OidnLibrary>());
-        const Rgb shown = filter->filtered({mean, variance, kind, quality, shafts}, {}).mean[200];
+        const Rgb shown = filter->filtered({mean, variance, kind, quality}, {}).mean[200];
         CHECK(shown.y == Approx((quality == FilterQuality::full ? 2.0f : 4.0f) * mean[200].y));
         std::ifstream file(folder.file("log"));
         return std::string(std::istreambuf_iterator<char>(file), {});
     };
-    const std::string with = "quality 0\n", without = "quality 0, no normals\n";
-    CHECK(runs(LayerKind::surface, false, FilterQuality::full) == with);
-    CHECK(runs(LayerKind::volume, false, FilterQuality::full) == without);
-    CHECK(runs(LayerKind::volume, true, FilterQuality::full) == without + with);
-    CHECK(runs(LayerKind::volume, true, FilterQuality::preview) == "quality 5, no normals\n");
+    CHECK(runs(LayerKind::surface, FilterQuality::full) == "quality 0\n");
+    CHECK(runs(LayerKind::volume, FilterQuality::full) == "quality 0, no normals\n");
+    CHECK(runs(LayerKind::volume, FilterQuality::preview) == "quality 5, no normals\n");
 }
 
 TEST_CASE("a filtered layer is finite and nowhere negative where the layer is not", "[oidn_filter]") {

@@ -158,6 +158,8 @@ TEST_CASE("The limit in time holds, and what exceeds it is said", "[session][tim
     CHECK(late.passes < rendered.passes + 2);
     REQUIRE_FALSE(late.warnings.empty());
     CHECK_THAT(late.warnings.back(), ContainsSubstring("limit of 5 s"));
+    settings.seconds_before = 0.0, settings.seconds_after = 10.0;
+    CHECK(session::render(scene, settings).passes < rendered.passes + 2);
 }
 
 TEST_CASE("What an observer throws ends the render and leaves it", "[session][observer]") {

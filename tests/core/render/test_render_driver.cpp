@@ -135,10 +135,10 @@ TEST_CASE("Stop rules", "[driver]") {
     CHECK_FALSE(must_stop({{}, {}, 0.09}, s));
     CHECK(must_stop({100, 4.0, 0.01}, s));                   // the first that holds
     CHECK_FALSE(must_stop({{}, 0.001, {}}, RenderState{}));  // one pass at least
-    s.seconds_before = 0.5;                                  // of loading and building
+    s.seconds_beside = 0.5;                                  // of loading and building
     CHECK(must_stop({{}, 4.9, {}}, s));
     CHECK_FALSE(must_stop({{}, 5.1, {}}, s));
-    s.seconds_before = 0.0,
+    s.seconds_beside = 0.0,
     s.seconds = 40.0;  // long passes: another one would end at 50 s, a second late at most
     CHECK(must_stop({{}, 48.9, {}}, s));
     CHECK_FALSE(must_stop({{}, 49.1, {}}, s));
