@@ -82,7 +82,7 @@ struct RenderRequest {
     const std::atomic<bool>* abandoned = nullptr;
     /// Wall time that the command took before: what stop.seconds is for begins there.
     double seconds_before = 0.0;
-    /// What it will take afterwards, such as to write the picture, about [s].
+    /// Wall time that it will take afterwards, such as to write the picture, about [s].
     double seconds_after = 0.0;
     /// Where no pass becomes complete: the pixels of the first that did (RenderResult::finished_pixels).
     bool keep_part_of_first_pass = false;

@@ -252,7 +252,7 @@ double LayerFilter::runs(const Film& film, std::uint32_t more) const {
 
 double LayerFilter::time_of_run(const Film& film, std::uint32_t more) const {
     // OpenImageDenoise has its larger network for features without noise alone.
-    return takes_full_features(film, more) ? filter_->full_per_preview() : 1.0;
+    return filter_ && takes_full_features(film, more) ? filter_->full_per_preview() : 1.0;
 }
 
 void LayerFilter::find_noise_free(const Film& film) {
