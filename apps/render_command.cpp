@@ -144,7 +144,7 @@ int render_command(const RenderArguments& arguments) {
     interruption.end_at_once_while("building");
     CommandObserver observer(arguments, files, scene, threads.count(), interruption);
     settings.seconds_before = seconds_since(start);
-    settings.seconds_after = seconds_to_write(scene);
+    if (arguments.seconds) settings.seconds_after = seconds_to_write(scene);
     Rendered rendered = session::render(scene, settings, observer);
     observer.end(rendered);
     const int code = finish(arguments, files, range, scene, rendered, interruption);

@@ -7,6 +7,7 @@
 
 #include "core/render/cpu_clock.h"
 #include "core/render/pass_runner.h"
+#include "screenspace/layer_filter/oidn_features.h"
 
 namespace mote::integrators {
 
@@ -234,7 +235,7 @@ void LayerFilter::find_quarters(const Film& film, CancelToken cancelled) {
 void LayerFilter::apply_to_fine(Film& film, std::size_t layer, CancelToken cancelled) {
     cancelled.check();
     const LayerOfPasses coarse = of_passes(film, layer);
-    if (std::ranges::all_of(coarse.variance, [](const Rgb& v) { return v == Rgb(0.0f); })) return;
+    if (screenspace::is_zero(coarse.variance)) return;
     film.set_mean(layer, screenspace::mixed_with_mean(film.width(), film.height(),
                                                       fine_->denoised(film.fine_sums(layer).mean()),
                                                       {coarse.mean, coarse.variance}));
@@ -259,8 +260,7 @@ void LayerFilter::find_noise_free(const Film& film) {
     noise_free_.clear();
     for (const Choice& choice : layers_) {
         if (film.pass_count(film.layers()[choice.layer].part) < 2) continue;
-        const std::vector<Rgb> variance = film.layer_variance_of_mean(choice.layer);
-        if (std::ranges::all_of(variance, [](const Rgb& v) { return v == Rgb(0.0f); }))
+        if (screenspace::is_zero(film.layer_variance_of_mean(choice.layer)))
             noise_free_.push_back(choice.layer);
     }
 }

@@ -82,7 +82,7 @@ class LayerFilter {
         std::vector<std::size_t> layers;
     };
     std::vector<Kind> kinds(const core::Film& film) const;
-    // `more`: passes to come.
+    // `more`, here and below: passes to come.
     bool joins_layers(const core::Film& film, std::uint32_t more = 0) const;
     /// Its variance is used from two passes on, or four: around a bright pixel that one of two passes has,
     /// the layer by OpenImageDenoise differs from the mean by more than the noise of the dark pixels there,
@@ -123,7 +123,7 @@ class LayerFilter {
     double feature_seconds_ = 0.0, filter_seconds_ = 0.0;
     double last_feature_seconds_ = 0.0;    ///< of the features that there are, without those of quarters
     double seconds_per_run_ = 0.0;         ///< of the filter for a preview, by the last call
-    std::vector<std::size_t> noise_free_;  ///< layers that the last call has left as they are
+    std::vector<std::size_t> noise_free_;  ///< layers without variance in the last film
 };
 
 }  // namespace mote::integrators
