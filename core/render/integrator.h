@@ -103,6 +103,9 @@ class Estimator {
     /// Wall time that finish() will take after another pass, where earlier calls have shown it [s]; nothing:
     /// about that of the last preview.
     virtual std::optional<double> seconds_to_finish(const Film& /*film*/) const { return std::nullopt; }
+    /// Called where there is no time for what finish() would do after another pass, but not after those of
+    /// the film: from then on it leaves that out.
+    virtual void shorten_finish(const Film& /*film*/) {}
     /// True if finish() sets what it leaves of the variance (Film::set_mean, Film::set_halves): then the
     /// noise is that of the finished picture.
     virtual bool changes_noise(const Film& /*film*/) const { return false; }

@@ -200,6 +200,17 @@ class PassLoop {
         if (seconds_since(checkpoint_time_) >= request_.checkpoint_every_seconds) write_checkpoint_now();
         show_preview();
         state_.seconds = seconds_since(start_);
+        keep_to_the_time();
+    }
+    /// More passes are worth more than time that is left since what is done after them would not fit.
+    void keep_to_the_time() {
+        StopRule time;
+        time.seconds = stop_.seconds;
+        if (!finished_before_ || !must_stop(time, state_)) return;
+        Estimator& estimator = runner_.estimator();
+        estimator.shorten_finish(result_.film);
+        state_.seconds_to_finish =
+            estimator.seconds_to_finish(result_.film).value_or(state_.seconds_to_finish);
     }
     /// True for a rule of noise or error, which must not depend on the clock.
     bool rule_looks() const { return stop_.noise || stop_.error; }

@@ -7,6 +7,7 @@
 
 #include "core/render/cpu_clock.h"
 #include "core/render/pass_runner.h"
+#include "integrators/layer_filter/filtered_sum.h"
 #include "screenspace/layer_filter/oidn_features.h"
 
 namespace mote::integrators {
@@ -15,83 +16,20 @@ using namespace core;
 
 namespace {
 
-/// Closest hits a pixel of passes, for each run of the denoiser saved, below which layers of a kind are
-/// denoised as one. A run takes as long as some 3 to 60, by scene and processor; one for each layer lowers
-/// the error by 1 to 16 %. At this work it is worth its time in five scenes of six (smoke room: from 50 on).
-constexpr double work_of_layer = 15.0;
-
-/// Closest hits a pixel of passes below which OpenImageDenoise takes rough features, with their noise: the
-/// error is larger by 12 to 20 %, but to march and denoise the others takes as long as 40 (city) to more than
-/// 90 (smoke room, Cornell box).
-constexpr double work_of_features = 90.0;
+/// Features that are found quickly.
 FeatureSettings rough(const FeatureSettings& s) { return {std::min(s.samples, 4), 4.0f * s.voxels}; }
 
-/// Closest hits a pixel of passes from which quarters of pixels are denoised. Their features and runs take
-/// as long as twelve runs, and lower the error by up to a sixth at 640 x 400, by up to a quarter at half
-/// that size.
-constexpr double work_of_fine = 300.0;
-/// With fewer, noise of quarters costs what their detail gains; and with a few, many have no sample, and
-/// OpenImageDenoise takes what fills them for detail.
-constexpr std::uint32_t passes_of_fine = 32;
 /// Time to find full features over that of rough ones (3 to 4.5), runs that denoise them, and time of those
 /// of quarters over full ones (1 to 1.5).
 constexpr double full_per_rough = 4.0, runs_of_features = 3.0, quarters_per_full = 1.4;
 constexpr double runs_of_fine = 4.0;  ///< time of a layer's quarters over that of its pixels
 
-/// `more`: passes to come, of the mean work.
-double work_of_pixel(const Film& film, std::uint32_t more = 0) {
-    double work = 0.0;
-    for (std::size_t part = 0; part < film.parts(); ++part) work += film.work(part);
-    const double passes = std::max(film.pass_count(), 1u);
-    return work * (1.0 + more / passes) / double(film.pixels());
-}
-
-screenspace::LayerToFilter to_filter(const LayerFilter::Choice& choice, const LayerOfPasses& layer) {
+screenspace::LayerToFilter to_filter(const ChosenLayer& choice, const LayerOfPasses& layer) {
     return {layer.mean, layer.variance, choice.kind};
 }
 
 LayerOfPasses of_half(const Film& film, std::size_t layer, int half) {
     return {film.half_mean(layer, half), film.half_variance_of_mean(layer, half)};
-}
-
-/// The fraction of all light in each layer: for pixels where no path has met any.
-std::vector<Vec3d> fractions(const std::vector<LayerOfPasses>& layers) {
-    std::vector<Vec3d> light(layers.size(), Vec3d(0.0));
-    Vec3d all(0.0);
-    for (std::size_t l = 0; l < layers.size(); ++l) {
-        for (const Rgb& mean : layers[l].mean) light[l] += Vec3d(mean);
-        all += light[l];
-    }
-    for (Vec3d& of_layer : light)
-        for (int c = 0; c < 3; ++c) of_layer[c] = all[c] > 0.0 ? of_layer[c] / all[c] : 0.0;
-    return light;
-}
-
-/// The filtered sum of layers, of which each keeps its fraction of a pixel.
-std::vector<std::vector<Rgb>> filtered_sum(screenspace::ViewFilter& filter, std::vector<LayerOfPasses> layers,
-                                           screenspace::LayerKind kind, screenspace::FilterQuality quality,
-                                           CancelToken cancelled) {
-    std::vector<Rgb> sum(layers[0].mean.size(), Rgb(0.0f)), variance = sum;
-    for (const LayerOfPasses& layer : layers)
-        for (std::size_t p = 0; p < sum.size(); ++p)
-            sum[p] += layer.mean[p], variance[p] += layer.variance[p];
-    const std::vector<Rgb> shown = filter.filtered({sum, variance, kind, quality}, cancelled).mean;
-    const std::vector<Vec3d> usual = fractions(layers);
-    std::vector<std::vector<Rgb>> result;
-    for (LayerOfPasses& layer : layers) {
-        const Rgb of_picture(usual[result.size()]);
-        for (std::size_t p = 0; p < sum.size(); ++p)
-            for (int c = 0; c < 3; ++c) {
-                const float here = sum[p][c] > 0.0f ? layer.mean[p][c] / sum[p][c] : of_picture[c];
-                layer.mean[p][c] = shown[p][c] * here;
-            }
-        result.push_back(std::move(layer.mean));
-    }
-    return result;
-}
-
-bool has_passes(const Film& film, std::size_t layer) {
-    return film.pass_count(film.layers()[layer].part) > 0;
 }
 
 }  // namespace
@@ -137,7 +75,7 @@ LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const
                   }) {}
 
 void LayerFilter::find_features(const Film& film, CancelToken cancelled) {
-    const bool full = takes_full_features(film);
+    const bool full = plan(film).full_features;
     const auto quality = full ? screenspace::FilterQuality::full : screenspace::FilterQuality::preview;
     if (filter_ && quality == found_quality_) return;
     options_.cancelled = cancelled;
@@ -175,19 +113,20 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
     variances_.clear();
     find_features(film, cancelled);
     find_noise_free(film);
-    if (joins_layers(film)) {
+    const FilterPlan now = plan(film);
+    if (now.joins) {
         apply_to_sums(film, screenspace::FilterQuality::full, cancelled);
         return;
     }
     const bool halves = has_halves(film);
-    find_quarters(film, cancelled);
+    find_quarters(now, cancelled);
     double seconds = 0.0;
     {
         const Stopwatch stopwatch(seconds);
         for (const Choice& choice : layers_) {
             if (halves)
                 apply_to_halves(film, choice, cancelled);
-            else if (is_fine(film, choice.layer))
+            else if (now.is_fine(choice.layer))
                 apply_to_fine(film, choice.layer, cancelled);
             else if (has_passes(film, choice.layer))
                 apply_to_mean(film, choice, cancelled);
@@ -196,36 +135,39 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
     filter_->release();
     if (fine_) fine_->release();
     filter_seconds_ += seconds;
-    if (const double count = runs(film); count > 0.0)
-        seconds_per_run_ = seconds / (count * time_of_run(film));
+    if (const double count = runs(film, now); count > 0.0)
+        seconds_per_run_ = seconds / (count * time_of_run(now));
 }
 
-bool LayerFilter::is_fine(const Film& film, std::size_t layer, std::uint32_t more) const {
-    return library_ && film.pass_count(film.layers()[layer].part) + more >= passes_of_fine &&
-           work_of_pixel(film, more) >= work_of_fine && film.fine_sums(layer).has_light();
+FilterPlan LayerFilter::plan(const Film& film, std::uint32_t more) const {
+    if (!library_) return {};
+    FilterPlan result = plan_filter(film, layers_, more);
+    if (!keeps_features_) return result;
+    result.full_features = result.full_features && has_full_features();
+    if (!fine_) result.fine.clear();
+    return result;
 }
 
-bool LayerFilter::needs_quarters(const Film& film, std::uint32_t more) const {
-    return !fine_ && !joins_layers(film, more) && std::ranges::any_of(layers_, [&](const Choice& choice) {
-        return is_fine(film, choice.layer, more);
-    });
-}
-
-bool LayerFilter::takes_full_features(const Film& film, std::uint32_t more) const {
-    return !library_ || work_of_pixel(film, more) >= work_of_features;
-}
-
-double LayerFilter::seconds_to_find_features(const Film& film, std::uint32_t more) const {
-    const bool finds_full =
-        takes_full_features(film, more) && found_quality_ != screenspace::FilterQuality::full;
+double LayerFilter::seconds_to_find_features(const FilterPlan& next) const {
+    const bool finds_full = needs_full_features(next);
     const double full = finds_full
                             ? full_per_rough * last_feature_seconds_ + runs_of_features * seconds_per_run_
                             : last_feature_seconds_;
-    return (finds_full ? full : 0.0) + (needs_quarters(film, more) ? quarters_per_full * full : 0.0);
+    return (finds_full ? full : 0.0) + (needs_quarters(next) ? quarters_per_full * full : 0.0);
 }
 
-void LayerFilter::find_quarters(const Film& film, CancelToken cancelled) {
-    if (!needs_quarters(film)) return;
+double LayerFilter::seconds_to_apply(const Film& film) const {
+    const FilterPlan next = plan(film, 1);
+    return seconds_to_find_features(next) + seconds_per_run_ * time_of_run(next) * runs(film, next);
+}
+
+void LayerFilter::keep_features(const Film& film) {
+    const FilterPlan now = plan(film);
+    keeps_features_ = keeps_features_ || !(needs_full_features(now) || needs_quarters(now));
+}
+
+void LayerFilter::find_quarters(const FilterPlan& now, CancelToken cancelled) {
+    if (!needs_quarters(now)) return;
     options_.cancelled = cancelled;
     const Stopwatch stopwatch(feature_seconds_);
     fine_ = std::make_unique<screenspace::FinePixels>(find_fine_features(scene_, options_, feature_settings_),
@@ -241,19 +183,19 @@ void LayerFilter::apply_to_fine(Film& film, std::size_t layer, CancelToken cance
                                                       {coarse.mean, coarse.variance}));
 }
 
-double LayerFilter::runs(const Film& film, std::uint32_t more) const {
+double LayerFilter::runs(const Film& film, const FilterPlan& of) const {
     const double halves = has_halves(film) ? 2.0 : 1.0;
-    if (joins_layers(film, more)) return double(kinds(film).size()) * halves;
+    if (of.joins) return double(kinds_of(film, layers_).size()) * halves;
     double runs = 0.0;
     for (const Choice& choice : layers_)
         if (std::ranges::find(noise_free_, choice.layer) == noise_free_.end())
-            runs += is_fine(film, choice.layer, more) ? runs_of_fine : halves;
+            runs += of.is_fine(choice.layer) ? runs_of_fine : halves;
     return runs;
 }
 
-double LayerFilter::time_of_run(const Film& film, std::uint32_t more) const {
+double LayerFilter::time_of_run(const FilterPlan& of) const {
     // OpenImageDenoise has its larger network for features without noise alone.
-    return filter_ && takes_full_features(film, more) ? filter_->full_per_preview() : 1.0;
+    return filter_ && of.full_features ? filter_->full_per_preview() : 1.0;
 }
 
 void LayerFilter::find_noise_free(const Film& film) {
@@ -279,40 +221,17 @@ LayerOfPasses LayerFilter::of_passes(Film& film, std::size_t layer) const {
                      : layer_of_passes(film, layer, 4, PassVariance::points);
 }
 
-bool LayerFilter::joins_layers(const Film& film, std::uint32_t more) const {
-    return library_ &&
-           work_of_pixel(film, more) < work_of_layer * double(layers_.size() - kinds(film).size());
-}
-
-std::vector<LayerFilter::Kind> LayerFilter::kinds(const Film& film) const {
-    std::vector<Kind> result;
-    // Light that is scattered once shows shafts and has little noise; the noise of the rest would hide them:
-    // as one they have 1.4 times the squared error (fog, 4 passes).
-    const auto group_of = [&](const Choice& choice) {
-        if (choice.kind == screenspace::LayerKind::surface) return 0;
-        return film.layers()[choice.layer].transport == Transport::multiple_scattering ? 2 : 1;
-    };
-    for (const int group : {0, 1, 2}) {
-        Kind found{group == 0 ? screenspace::LayerKind::surface : screenspace::LayerKind::volume, {}};
-        for (const Choice& choice : layers_)
-            if (group_of(choice) == group && has_passes(film, choice.layer))
-                found.layers.push_back(choice.layer);
-        if (!found.layers.empty()) result.push_back(std::move(found));
-    }
-    return result;
-}
-
 void LayerFilter::apply_to_sums(Film& film, screenspace::FilterQuality quality, CancelToken cancelled) {
-    const std::vector<Kind> all = kinds(film);
+    const std::vector<LayersOfKind> all = kinds_of(film, layers_);
     double seconds = 0.0;
     {
         const Stopwatch stopwatch(seconds);
-        for (const Kind& kind : all) apply_to_sum(film, kind, quality, cancelled);
+        for (const LayersOfKind& kind : all) apply_to_sum(film, kind, quality, cancelled);
     }
     filter_->release();
     filter_seconds_ += seconds;
     const double count = double(all.size()) * (has_halves(film) ? 2.0 : 1.0);
-    const double time = quality == screenspace::FilterQuality::full ? time_of_run(film) : 1.0;
+    const double time = quality == screenspace::FilterQuality::full ? time_of_run(plan(film)) : 1.0;
     if (count > 0.0) seconds_per_run_ = seconds / (count * time);
 }
 
@@ -327,7 +246,7 @@ bool LayerFilter::apply_for_preview(Film& film, CancelToken cancelled) {
     return false;
 }
 
-void LayerFilter::apply_to_sum(Film& film, const Kind& kind, screenspace::FilterQuality quality,
+void LayerFilter::apply_to_sum(Film& film, const LayersOfKind& kind, screenspace::FilterQuality quality,
                                CancelToken cancelled) {
     const std::vector<std::size_t>& layers = kind.layers;
     const auto shown = [&](const auto& layer_of) {

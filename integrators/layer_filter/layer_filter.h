@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "core/film/film.h"
 #include "core/parameters/add_type.h"
+#include "integrators/layer_filter/filter_plan.h"
 #include "integrators/layer_filter/layer_of_passes.h"
 #include "integrators/layer_filter/scene_features.h"
 #include "screenspace/layer_filter/view_filter.h"
@@ -25,10 +25,7 @@ const core::ParameterList<LayerFilterParameters>& layer_filter_rows();
 
 class LayerFilter {
   public:
-    struct Choice {
-        std::size_t layer;  ///< of the film, which must keep its squares
-        screenspace::LayerKind kind;
-    };
+    using Choice = ChosenLayer;
 
     /// Our own filter. The scene must outlive this; size, seed and sampler are those of the render. `layers`
     /// may be empty: then nothing is filtered.
@@ -44,20 +41,20 @@ class LayerFilter {
     /// filter leaves all layers of one pass as they are. Throws std::invalid_argument where a layer has no
     /// squares, and Cancelled.
     ///
-    /// After little work OpenImageDenoise takes the sum of all layers of a kind at once, each of which keeps
-    /// its fraction of a pixel: more passes are then worth more than a run for each layer. After even less it
-    /// takes features of fewer eye rays and steps, with their noise. After much work it takes layers at twice
-    /// the resolution where the film has them (screenspace/layer_filter/fine_pixels.h). Work is counted, so
-    /// this does not depend on the machine.
+    /// OpenImageDenoise does what the film's work is worth (filter_plan.h): the sum of all layers of a kind
+    /// at once at first, each of which keeps its fraction of a pixel, and features with their noise; later
+    /// layer by layer, and at twice the resolution where the film has that
+    /// (screenspace/layer_filter/fine_pixels.h).
     void apply(core::Film& film, core::CancelToken cancelled = {});
 
     /// apply() for a preview: OpenImageDenoise takes sums always, and quickly. Returns true where it is the
     /// same: for our own filter.
     bool apply_for_preview(core::Film& film, core::CancelToken cancelled = {});
     /// Wall time of apply() after another pass, by that of the last call of either [s].
-    double seconds_to_apply(const core::Film& film) const {
-        return seconds_to_find_features(film, 1) + seconds_per_run_ * time_of_run(film, 1) * runs(film, 1);
-    }
+    double seconds_to_apply(const core::Film& film) const;
+    /// From now on there is no time for better features than those of the last call of either, but where
+    /// this film is worth better ones already.
+    void keep_features(const core::Film& film);
 
     const std::vector<Choice>& layers() const { return layers_; }
     /// True where apply() filters the halves of this film.
@@ -76,37 +73,29 @@ class LayerFilter {
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options, const FeatureSettings& features,
                 std::vector<Choice> layers, std::shared_ptr<const screenspace::OidnLibrary> library,
                 MakeFilter make);
-    /// Layers that see the same features, are alike, and have passes.
-    struct Kind {
-        screenspace::LayerKind kind;
-        std::vector<std::size_t> layers;
-    };
-    std::vector<Kind> kinds(const core::Film& film) const;
-    // `more`, here and below: passes to come.
-    bool joins_layers(const core::Film& film, std::uint32_t more = 0) const;
+    /// With rough features where it keeps them.
+    FilterPlan plan(const core::Film& film, std::uint32_t more = 0) const;
     /// Its variance is used from two passes on, or four: around a bright pixel that one of two passes has,
     /// the layer by OpenImageDenoise differs from the mean by more than the noise of the dark pixels there,
     /// and would be mixed with it in rings.
     LayerOfPasses of_passes(core::Film& film, std::size_t layer) const;
     /// Features of the quality that the film's work is worth.
     void find_features(const core::Film& film, core::CancelToken cancelled);
-    /// True for a layer that is denoised at twice the resolution, in films of whole passes.
-    bool is_fine(const core::Film& film, std::size_t layer, std::uint32_t more = 0) const;
-    /// True where layers are, and the features of quarters are not found yet.
-    bool needs_quarters(const core::Film& film, std::uint32_t more = 0) const;
-    bool takes_full_features(const core::Film& film, std::uint32_t more = 0) const;
-    double seconds_to_find_features(const core::Film& film, std::uint32_t more) const;
+    bool has_full_features() const { return filter_ && found_quality_ == screenspace::FilterQuality::full; }
+    bool needs_full_features(const FilterPlan& of) const { return of.full_features && !has_full_features(); }
+    bool needs_quarters(const FilterPlan& of) const { return !of.fine.empty() && !fine_; }
+    double seconds_to_find_features(const FilterPlan& next) const;
     void find_noise_free(const core::Film& film);
-    void find_quarters(const core::Film& film, core::CancelToken cancelled);
+    void find_quarters(const FilterPlan& now, core::CancelToken cancelled);
     void apply_to_fine(core::Film& film, std::size_t layer, core::CancelToken cancelled);
     /// Time of a run at full quality over that of one for a preview.
-    double time_of_run(const core::Film& film, std::uint32_t more = 0) const;
+    double time_of_run(const FilterPlan& of) const;
     /// Time of apply() in that of one layer.
-    double runs(const core::Film& film, std::uint32_t more = 0) const;
+    double runs(const core::Film& film, const FilterPlan& of) const;
     void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_mean(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_sums(core::Film& film, screenspace::FilterQuality quality, core::CancelToken cancelled);
-    void apply_to_sum(core::Film& film, const Kind& kind, screenspace::FilterQuality quality,
+    void apply_to_sum(core::Film& film, const LayersOfKind& kind, screenspace::FilterQuality quality,
                       core::CancelToken cancelled);
 
     const core::Scene& scene_;
@@ -119,6 +108,7 @@ class LayerFilter {
     std::unique_ptr<screenspace::ViewFilter> filter_;  ///< from the features
     std::unique_ptr<screenspace::FinePixels> fine_;
     screenspace::FilterQuality found_quality_ = screenspace::FilterQuality::full;  ///< of the features
+    bool keeps_features_ = false;                                                  ///< without better ones
     std::vector<std::vector<float>> variances_;
     double feature_seconds_ = 0.0, filter_seconds_ = 0.0;
     double last_feature_seconds_ = 0.0;    ///< of the features that there are, without those of quarters

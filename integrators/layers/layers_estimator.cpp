@@ -135,6 +135,7 @@ class LayersEstimator final : public Estimator {
     std::optional<double> seconds_to_finish(const Film& film) const override {
         return filter_.seconds_to_apply(film);
     }
+    void shorten_finish(const Film& film) override { filter_.keep_features(film); }
 
     bool changes_noise(const Film& film) const override {
         return filter_.has_variance() || filter_.has_halves(film);

@@ -582,6 +582,45 @@ TEST_CASE("a picture that a preview has finished is not finished again", "[drive
     CHECK(result.film.mean(0)[0].x == 7.0f);
 }
 
+namespace {
+
+/// Its finish() would take for ever after another pass, unless it is shortened.
+class LongFinish final : public Integrator {
+  public:
+    explicit LongFinish(bool can_be_shorter) : can_be_shorter_(can_be_shorter) {}
+    std::string type() const override { return "long"; }
+    std::vector<Layer> layers(const Scene&) const override { return {{"direct", "", false}}; }
+    Plan plan(const Scene&, const Requirements&) const override { return {}; }
+    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
+        return std::make_unique<Pass>(can_be_shorter_);
+    }
+
+  private:
+    class Pass final : public Estimator {
+      public:
+        explicit Pass(bool can_be_shorter) : can_be_shorter_(can_be_shorter) {}
+        bool pass(const PassContext&, PassImage&) override { return true; }
+        std::optional<double> seconds_to_finish(const Film&) const override { return shorter_ ? 0.0 : 1e9; }
+        void shorten_finish(const Film&) override { shorter_ = can_be_shorter_; }
+
+      private:
+        bool can_be_shorter_, shorter_ = false;
+    };
+    bool can_be_shorter_;
+};
+
+}  // namespace
+
+TEST_CASE("Time that is left, but not for what finish() would do after more passes, is used for passes",
+          "[driver]") {
+    const auto scene = fake_scene();
+    RenderRequest request = request_for(5);
+    request.stop.seconds = 1e6;
+    request.preview = [](const Film&, const auto&) {};
+    CHECK(render(*scene, LongFinish(false), request).film.pass_count() == 1);
+    CHECK(render(*scene, LongFinish(true), request).film.pass_count() == 5);
+}
+
 TEST_CASE("an interrupted render has the finished picture where that is quick, and else the last preview's",
           "[driver][stopping]") {
     const auto scene = fake_scene();
