@@ -103,6 +103,8 @@ class Estimator {
     /// Wall time that finish() will take after another pass, where earlier calls have shown it [s]; nothing:
     /// about that of the last preview.
     virtual std::optional<double> seconds_to_finish(const Film& /*film*/) const { return std::nullopt; }
+    /// Wall time so far of what finish() finds once, for all later calls [s].
+    virtual double seconds_once() const { return 0.0; }
     /// Called where there is no time for what finish() would do after another pass, but not after those of
     /// the film: from then on it leaves that out.
     virtual void shorten_finish(const Film& /*film*/) {}

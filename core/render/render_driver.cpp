@@ -224,25 +224,34 @@ class PassLoop {
         const bool for_the_noise = request_.progress && !rule_looks() && changes_noise();
         const bool seen = request_.preview && (!request_.preview_is_seen || request_.preview_is_seen());
         if ((!seen && !for_the_noise) || is_done()) return;
-        // After this time a preview is shown though some part of the picture is still black.
+        // After this time the passes are shown though some part of the picture is still black: as they are,
+        // since to finish them would put off the others.
         constexpr double patience = 2.5;
-        if (!result_.film.has_passes(1) && seconds_since(start_) < patience) return;
-        // The first one also builds what all others need.
-        const double expected = finished_previews_ == 1 ? 0.25 * preview_seconds_ : preview_seconds_;
-        const double wait =
-            std::max(seen ? request_.preview_every_seconds : 1.0, expected / request_.preview_share);
-        if (previews_ > 0 && seconds_since(preview_time_) < wait) return;
+        const bool whole = result_.film.has_passes(1);
+        if (!whole && (!seen || seconds_since(start_) < patience)) return;
+        if (previews_ > 0 && !is_due_again(seen)) return;
         const Clock::time_point begin = Clock::now();
-        if (seen && previews_ == 0 && request_.first_preview_is_raw)
+        const double once = runner_.estimator().seconds_once();
+        if (seen && (!whole || (previews_ == 0 && request_.first_preview_is_raw)))
             request_.preview(result_.film, stated(result_.film));
         else
             finish_for_preview(seen);
-        ++previews_, preview_time_ = Clock::now(), preview_seconds_ = seconds_since(begin);
-        state_.seconds_of_previews += preview_seconds_;
+        ++previews_, preview_time_ = Clock::now();
+        state_.seconds_of_previews += seconds_since(begin);
+        preview_seconds_ = seconds_since(begin) - (runner_.estimator().seconds_once() - once);
         result_.statistics.seconds["previews"] = state_.seconds_of_previews;
     }
+    /// After as long as the render had taken, while previews take up to four times their share of the time;
+    /// later by their share. None shortly before the end.
+    bool is_due_again(bool seen) const {
+        const double before = std::chrono::duration<double>(preview_time_ - start_).count(),
+                     of_share = preview_seconds_ / request_.preview_share,
+                     wait = std::max(seen ? request_.preview_every_seconds : 1.0,
+                                     std::min(of_share, std::max(0.25 * of_share, before))),
+                     left = seconds_left(stop_, state_);
+        return seconds_since(preview_time_) >= wait && (left < 0.0 || left >= 0.25 * wait);
+    }
     void finish_for_preview(bool seen) {
-        ++finished_previews_;
         try {
             finish_for_now(true, [&](const std::optional<PictureError>& error) {
                 if (seen) request_.preview(result_.film, error);
@@ -307,8 +316,8 @@ class PassLoop {
     RenderResult& result_;
     const std::atomic<bool> never_{false};
     RenderState state_{.noise = infinity};
-    int previews_ = 0, finished_previews_ = 0;
-    double preview_seconds_ = 0.0;  ///< that the last one took
+    int previews_ = 0;
+    double preview_seconds_ = 0.0;  ///< that the last one took, without what the next finds already
     Film::Replacements preview_means_;
     std::uint32_t preview_passes_ = 0;
     /// Noise of the picture when it was finished last, and relative to the noise of its passes.

@@ -268,7 +268,7 @@ void LayerFilter::apply_to_sum(Film& film, const LayersOfKind& kind, screenspace
 
 void LayerFilter::add_statistics(Statistics& statistics) const {
     if (layers_.empty()) return;
-    statistics.seconds["filter_features"] = feature_seconds_ + last_feature_seconds_;
+    statistics.seconds["filter_features"] = feature_seconds();
     statistics.seconds["filter"] = filter_seconds_;
 }
 

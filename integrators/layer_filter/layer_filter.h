@@ -64,6 +64,8 @@ class LayerFilter {
     /// Remaining variance of each layer of the last apply() of whole passes, mean over channels, in its
     /// order; empty: unknown.
     const std::vector<std::vector<float>>& variances() const { return variances_; }
+    /// Wall time of all features so far [s].
+    double feature_seconds() const { return feature_seconds_ + last_feature_seconds_; }
     /// Wall time of features and of all calls, where there are layers.
     void add_statistics(core::Statistics& statistics) const;
 

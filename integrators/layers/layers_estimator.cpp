@@ -135,6 +135,7 @@ class LayersEstimator final : public Estimator {
     std::optional<double> seconds_to_finish(const Film& film) const override {
         return filter_.seconds_to_apply(film);
     }
+    double seconds_once() const override { return filter_.feature_seconds(); }
     void shorten_finish(const Film& film) override { filter_.keep_features(film); }
 
     bool changes_noise(const Film& film) const override {

@@ -61,6 +61,7 @@ class VplEstimator : public core::Estimator {
         filter_.apply(film, cancelled);
         residual_->finish(film, cancelled);
     }
+    double seconds_once() const override { return filter_.feature_seconds(); }
 
     void add_statistics(core::Statistics& statistics) const override {
         loop_.add_statistics(statistics);

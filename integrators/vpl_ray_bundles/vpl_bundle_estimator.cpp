@@ -61,6 +61,7 @@ class VplBundleEstimator final : public Estimator {
     }
 
     void finish(Film& film, CancelToken cancelled) override { filter_.apply(film, cancelled); }
+    double seconds_once() const override { return filter_.feature_seconds(); }
 
     void add_statistics(Statistics& statistics) const override {
         loop_.add_statistics(statistics);

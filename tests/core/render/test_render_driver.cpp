@@ -553,6 +553,49 @@ TEST_CASE("a preview shows the finished picture and leaves the film as it was", 
     CHECK(result.film.mean(0)[0].x == 7.0f);
 }
 
+namespace {
+
+/// Says how long it took to find what later calls find already, whatever it took.
+class OnceIntegrator final : public Integrator {
+  public:
+    explicit OnceIntegrator(double seconds) : seconds_(seconds) {}
+    std::string type() const override { return "once"; }
+    std::vector<Layer> layers(const Scene&) const override { return {{"direct", "", false}}; }
+    Plan plan(const Scene&, const Requirements&) const override { return {}; }
+    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
+        return std::make_unique<Pass>(seconds_);
+    }
+
+  private:
+    class Pass final : public Estimator {
+      public:
+        explicit Pass(double seconds) : seconds_(seconds) {}
+        bool pass(const PassContext&, PassImage&) override { return true; }
+        void finish(Film&, CancelToken) override { found_ = true; }
+        double seconds_once() const override { return found_ ? seconds_ : 0.0; }
+
+      private:
+        double seconds_;
+        bool found_ = false;
+    };
+    double seconds_;
+};
+
+}  // namespace
+
+TEST_CASE("Time for what a preview finds for all later ones does not put those off", "[driver]") {
+    const auto scene = fake_scene();
+    int shown = 0;
+    RenderRequest request = request_for(20);
+    request.preview = [&](const Film&, const auto&) { ++shown; };
+    request.preview_every_seconds = 0.0, request.preview_share = 1e-12;  // the next one in a million seconds
+    render(*scene, OnceIntegrator(0.0), request);
+    CHECK(shown == 1);
+    shown = 0;
+    render(*scene, OnceIntegrator(1e6), request);
+    CHECK(shown == 2);
+}
+
 TEST_CASE("a quick look is not finished: the first preview, or the whole picture", "[driver]") {
     const auto scene = fake_scene();
     std::vector<float> seen, shown;
