@@ -236,9 +236,10 @@ class PassLoop {
             request_.preview(result_.film, stated(result_.film));
         else
             finish_for_preview(seen);
+        const double seconds = seconds_since(begin);
         ++previews_, preview_time_ = Clock::now();
-        state_.seconds_of_previews += seconds_since(begin);
-        preview_seconds_ = seconds_since(begin) - (runner_.estimator().seconds_once() - once);
+        state_.seconds_of_previews += seconds;
+        preview_seconds_ = seconds - (runner_.estimator().seconds_once() - once);
         result_.statistics.seconds["previews"] = state_.seconds_of_previews;
     }
     /// After as long as the render had taken, while previews take up to four times their share of the time;

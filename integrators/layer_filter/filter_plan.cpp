@@ -31,13 +31,11 @@ double work_of_pixel(const Film& film, std::uint32_t more) {
     return work * (1.0 + more / passes) / double(film.pixels());
 }
 
+}  // namespace
+
 std::uint32_t passes_of(const Film& film, std::size_t layer) {
     return film.pass_count(film.layers()[layer].part);
 }
-
-}  // namespace
-
-bool has_passes(const Film& film, std::size_t layer) { return passes_of(film, layer) > 0; }
 
 std::vector<LayersOfKind> kinds_of(const Film& film, std::span<const ChosenLayer> layers) {
     std::vector<LayersOfKind> result;
@@ -50,7 +48,7 @@ std::vector<LayersOfKind> kinds_of(const Film& film, std::span<const ChosenLayer
     for (const int group : {0, 1, 2}) {
         LayersOfKind found{group == 0 ? screenspace::LayerKind::surface : screenspace::LayerKind::volume, {}};
         for (const ChosenLayer& chosen : layers)
-            if (group_of(chosen) == group && has_passes(film, chosen.layer))
+            if (group_of(chosen) == group && passes_of(film, chosen.layer) > 0)
                 found.layers.push_back(chosen.layer);
         if (!found.layers.empty()) result.push_back(std::move(found));
     }

@@ -34,6 +34,6 @@ struct FilterPlan {
 /// `more`: passes to come, of the mean work.
 FilterPlan plan_filter(const core::Film& film, std::span<const ChosenLayer> layers, std::uint32_t more = 0);
 
-bool has_passes(const core::Film& film, std::size_t layer);
+std::uint32_t passes_of(const core::Film& film, std::size_t layer);
 
 }  // namespace mote::integrators

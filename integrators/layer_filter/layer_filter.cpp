@@ -74,8 +74,8 @@ LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const
                       return screenspace::make_oidn_filter(found, library, quality);
                   }) {}
 
-void LayerFilter::find_features(const Film& film, CancelToken cancelled) {
-    const bool full = plan(film).full_features;
+void LayerFilter::find_features(const FilterPlan& now, CancelToken cancelled) {
+    const bool full = now.full_features;
     const auto quality = full ? screenspace::FilterQuality::full : screenspace::FilterQuality::preview;
     if (filter_ && quality == found_quality_) return;
     options_.cancelled = cancelled;
@@ -111,11 +111,11 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
             throw std::invalid_argument("a filtered layer needs its squares");
     if (layers_.empty() || (!library_ && !film.has_passes(2))) return;
     variances_.clear();
-    find_features(film, cancelled);
-    find_noise_free(film);
     const FilterPlan now = plan(film);
+    find_features(now, cancelled);
+    find_noise_free(film);
     if (now.joins) {
-        apply_to_sums(film, screenspace::FilterQuality::full, cancelled);
+        apply_to_sums(film, screenspace::FilterQuality::full, time_of_run(now), cancelled);
         return;
     }
     const bool halves = has_halves(film);
@@ -128,7 +128,7 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
                 apply_to_halves(film, choice, cancelled);
             else if (now.is_fine(choice.layer))
                 apply_to_fine(film, choice.layer, cancelled);
-            else if (has_passes(film, choice.layer))
+            else if (passes_of(film, choice.layer) > 0)
                 apply_to_mean(film, choice, cancelled);
         }
     }
@@ -201,7 +201,7 @@ double LayerFilter::time_of_run(const FilterPlan& of) const {
 void LayerFilter::find_noise_free(const Film& film) {
     noise_free_.clear();
     for (const Choice& choice : layers_) {
-        if (film.pass_count(film.layers()[choice.layer].part) < 2) continue;
+        if (passes_of(film, choice.layer) < 2) continue;
         if (screenspace::is_zero(film.layer_variance_of_mean(choice.layer)))
             noise_free_.push_back(choice.layer);
     }
@@ -221,7 +221,8 @@ LayerOfPasses LayerFilter::of_passes(Film& film, std::size_t layer) const {
                      : layer_of_passes(film, layer, 4, PassVariance::points);
 }
 
-void LayerFilter::apply_to_sums(Film& film, screenspace::FilterQuality quality, CancelToken cancelled) {
+void LayerFilter::apply_to_sums(Film& film, screenspace::FilterQuality quality, double time_of_run,
+                                CancelToken cancelled) {
     const std::vector<LayersOfKind> all = kinds_of(film, layers_);
     double seconds = 0.0;
     {
@@ -231,8 +232,7 @@ void LayerFilter::apply_to_sums(Film& film, screenspace::FilterQuality quality, 
     filter_->release();
     filter_seconds_ += seconds;
     const double count = double(all.size()) * (has_halves(film) ? 2.0 : 1.0);
-    const double time = quality == screenspace::FilterQuality::full ? time_of_run(plan(film)) : 1.0;
-    if (count > 0.0) seconds_per_run_ = seconds / (count * time);
+    if (count > 0.0) seconds_per_run_ = seconds / (count * time_of_run);
 }
 
 bool LayerFilter::apply_for_preview(Film& film, CancelToken cancelled) {
@@ -240,9 +240,9 @@ bool LayerFilter::apply_for_preview(Film& film, CancelToken cancelled) {
         apply(film, cancelled);
         return true;
     }
-    find_features(film, cancelled);
+    find_features(plan(film), cancelled);
     find_noise_free(film);
-    apply_to_sums(film, screenspace::FilterQuality::preview, cancelled);
+    apply_to_sums(film, screenspace::FilterQuality::preview, 1.0, cancelled);
     return false;
 }
 

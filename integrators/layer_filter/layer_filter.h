@@ -82,7 +82,7 @@ class LayerFilter {
     /// and would be mixed with it in rings.
     LayerOfPasses of_passes(core::Film& film, std::size_t layer) const;
     /// Features of the quality that the film's work is worth.
-    void find_features(const core::Film& film, core::CancelToken cancelled);
+    void find_features(const FilterPlan& now, core::CancelToken cancelled);
     bool has_full_features() const { return filter_ && found_quality_ == screenspace::FilterQuality::full; }
     bool needs_full_features(const FilterPlan& of) const { return of.full_features && !has_full_features(); }
     bool needs_quarters(const FilterPlan& of) const { return !of.fine.empty() && !fine_; }
@@ -96,7 +96,8 @@ class LayerFilter {
     double runs(const core::Film& film, const FilterPlan& of) const;
     void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);
     void apply_to_mean(core::Film& film, const Choice& choice, core::CancelToken cancelled);
-    void apply_to_sums(core::Film& film, screenspace::FilterQuality quality, core::CancelToken cancelled);
+    void apply_to_sums(core::Film& film, screenspace::FilterQuality quality, double time_of_run,
+                       core::CancelToken cancelled);
     void apply_to_sum(core::Film& film, const LayersOfKind& kind, screenspace::FilterQuality quality,
                       core::CancelToken cancelled);
 
