@@ -17,6 +17,7 @@
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/environment.h"
+#include "tests/support/integrator_of.h"
 #include "tests/support/render_statistics.h"
 #include "tests/support/temporary_folder.h"
 
@@ -303,34 +304,21 @@ int check_all(const Scene& scene, const std::string& type, std::set<std::string>
 /// Errors of the two kinds that are looked for.
 enum class Carelessness { threads, state };
 
-class Careless final : public Integrator {
+class CarelessEstimator final : public Estimator {
   public:
-    explicit Careless(Carelessness how) : how_(how) {}
-    std::string type() const override { return "careless"; }
-    std::vector<Layer> layers(const Scene&) const override { return {{"direct", ""}}; }
-    Plan plan(const Scene&, const Requirements&) const override { return {}; }
-    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
-        return std::make_unique<Pass>(how_);
+    explicit CarelessEstimator(Carelessness how) : how_(how) {}
+    bool pass(const PassContext&, PassImage& image) override {
+        ++passes_;
+        const int value = how_ == Carelessness::threads ? tbb::this_task_arena::max_concurrency() : passes_;
+        for (Rgb& pixel : image.layer(0)) pixel = Rgb(float(value));
+        return true;
     }
 
   private:
-    class Pass final : public Estimator {
-      public:
-        explicit Pass(Carelessness how) : how_(how) {}
-        bool pass(const PassContext&, PassImage& image) override {
-            ++passes_;
-            const int value =
-                how_ == Carelessness::threads ? tbb::this_task_arena::max_concurrency() : passes_;
-            for (Rgb& pixel : image.layer(0)) pixel = Rgb(float(value));
-            return true;
-        }
-
-      private:
-        Carelessness how_;
-        int passes_ = 0;
-    };
     Carelessness how_;
+    int passes_ = 0;
 };
+using Careless = IntegratorOf<CarelessEstimator>;
 
 }  // namespace
 

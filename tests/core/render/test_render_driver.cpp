@@ -12,6 +12,7 @@
 #include "core/render/stop_clock.h"
 #include "tests/core/render/fake_render.h"
 #include "tests/support/catch.h"
+#include "tests/support/integrator_of.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace mote::core;
@@ -502,41 +503,28 @@ namespace {
 using InFinish = std::function<void(const Film&, CancelToken)>;
 
 /// One that finishes its picture with sevens, and notes what the film says when the next pass is chosen.
-class FinishingIntegrator final : public Integrator {
+class FinishingEstimator final : public Estimator {
   public:
-    explicit FinishingIntegrator(std::vector<float>& seen, InFinish in_finish = {})
+    explicit FinishingEstimator(std::vector<float>& seen, InFinish in_finish = {})
         : seen_(seen), in_finish_(std::move(in_finish)) {}
-    std::string type() const override { return "finishing"; }
-    std::vector<Layer> layers(const Scene&) const override { return {{"direct", ""}}; }
-    Plan plan(const Scene&, const Requirements&) const override { return {}; }
-    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
-        return std::make_unique<Pass>(seen_, in_finish_);
+    bool pass(const PassContext&, PassImage& image) override {
+        for (Rgb& pixel : image.layer(0)) pixel = Rgb(1.0f);
+        return true;
+    }
+    std::size_t next_part(const Film& film) const override {
+        seen_.push_back(film.mean(0)[0].x);
+        return 0;
+    }
+    void finish(Film& film, CancelToken cancelled) override {
+        film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(7.0f)));
+        if (in_finish_) in_finish_(film, cancelled);
     }
 
   private:
-    class Pass final : public Estimator {
-      public:
-        Pass(std::vector<float>& seen, InFinish in_finish) : seen_(seen), in_finish_(std::move(in_finish)) {}
-        bool pass(const PassContext&, PassImage& image) override {
-            for (Rgb& pixel : image.layer(0)) pixel = Rgb(1.0f);
-            return true;
-        }
-        std::size_t next_part(const Film& film) const override {
-            seen_.push_back(film.mean(0)[0].x);
-            return 0;
-        }
-        void finish(Film& film, CancelToken cancelled) override {
-            film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(7.0f)));
-            if (in_finish_) in_finish_(film, cancelled);
-        }
-
-      private:
-        std::vector<float>& seen_;
-        InFinish in_finish_;
-    };
     std::vector<float>& seen_;
     InFinish in_finish_;
 };
+using FinishingIntegrator = IntegratorOf<FinishingEstimator>;
 
 }  // namespace
 
@@ -556,30 +544,18 @@ TEST_CASE("a preview shows the finished picture and leaves the film as it was", 
 namespace {
 
 /// Says how long it took to find what later calls find already, whatever it took.
-class OnceIntegrator final : public Integrator {
+class OnceEstimator final : public Estimator {
   public:
-    explicit OnceIntegrator(double seconds) : seconds_(seconds) {}
-    std::string type() const override { return "once"; }
-    std::vector<Layer> layers(const Scene&) const override { return {{"direct", "", false}}; }
-    Plan plan(const Scene&, const Requirements&) const override { return {}; }
-    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
-        return std::make_unique<Pass>(seconds_);
-    }
+    explicit OnceEstimator(double seconds) : seconds_(seconds) {}
+    bool pass(const PassContext&, PassImage&) override { return true; }
+    void finish(Film&, CancelToken) override { found_ = true; }
+    double seconds_once() const override { return found_ ? seconds_ : 0.0; }
 
   private:
-    class Pass final : public Estimator {
-      public:
-        explicit Pass(double seconds) : seconds_(seconds) {}
-        bool pass(const PassContext&, PassImage&) override { return true; }
-        void finish(Film&, CancelToken) override { found_ = true; }
-        double seconds_once() const override { return found_ ? seconds_ : 0.0; }
-
-      private:
-        double seconds_;
-        bool found_ = false;
-    };
     double seconds_;
+    bool found_ = false;
 };
+using OnceIntegrator = IntegratorOf<OnceEstimator>;
 
 }  // namespace
 
@@ -628,29 +604,17 @@ TEST_CASE("a picture that a preview has finished is not finished again", "[drive
 namespace {
 
 /// Its finish() would take for ever after another pass, unless it is shortened.
-class LongFinish final : public Integrator {
+class LongFinishEstimator final : public Estimator {
   public:
-    explicit LongFinish(bool can_be_shorter) : can_be_shorter_(can_be_shorter) {}
-    std::string type() const override { return "long"; }
-    std::vector<Layer> layers(const Scene&) const override { return {{"direct", "", false}}; }
-    Plan plan(const Scene&, const Requirements&) const override { return {}; }
-    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
-        return std::make_unique<Pass>(can_be_shorter_);
-    }
+    explicit LongFinishEstimator(bool can_be_shorter) : can_be_shorter_(can_be_shorter) {}
+    bool pass(const PassContext&, PassImage&) override { return true; }
+    std::optional<double> seconds_to_finish(const Film&) const override { return shorter_ ? 0.0 : 1e9; }
+    void shorten_finish(const Film&) override { shorter_ = can_be_shorter_; }
 
   private:
-    class Pass final : public Estimator {
-      public:
-        explicit Pass(bool can_be_shorter) : can_be_shorter_(can_be_shorter) {}
-        bool pass(const PassContext&, PassImage&) override { return true; }
-        std::optional<double> seconds_to_finish(const Film&) const override { return shorter_ ? 0.0 : 1e9; }
-        void shorten_finish(const Film&) override { shorter_ = can_be_shorter_; }
-
-      private:
-        bool can_be_shorter_, shorter_ = false;
-    };
-    bool can_be_shorter_;
+    bool can_be_shorter_, shorter_ = false;
 };
+using LongFinish = IntegratorOf<LongFinishEstimator>;
 
 }  // namespace
 
