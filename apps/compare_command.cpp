@@ -237,7 +237,8 @@ int compare_command(const CompareArguments& arguments) {
     const std::optional<core::PictureError> stated =
         layer.empty() ? stated_error(image.metadata) : std::nullopt;
     if (!arguments.map.empty())
-        core::write_png(arguments.map, a.width, a.height, core::error_map(a.pixels, r.pixels));
+        core::write_png(arguments.map, a.width, a.height,
+                        core::error_map(a.pixels, r.pixels, a.width, a.height));
     std::string difference;
     if (!difference_path.empty())
         difference = fmt::format("\ndifference {}: {}\n", core::printable(difference_path, 400),

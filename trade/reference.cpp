@@ -29,11 +29,8 @@ std::optional<double> number(const std::string& text) {
 
 /// Weights and noise, which need pixels that are finite.
 void set_weights(Reference& r) {
-    if (r.variance.empty()) {
-        r.weights = core::relative_weights(r.pixels);
-        return;
-    }
     r.weights = core::relative_weights(r.pixels, r.variance, r.image.width, r.image.height);
+    if (r.variance.empty()) return;
     // Against itself: no error, but the noise that it says it has.
     const core::RelativeError own = core::relative_error(r.pixels, r.pixels, r.weights, r.variance);
     r.noise = own.noise, r.bias_error = own.bias_standard_error;

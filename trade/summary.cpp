@@ -129,8 +129,9 @@ json summary_json(const Results& results) {
         {"definitions",
          {{"error",
            "square root of sum w |d|^2 / sum w |r|^2, without the reference's own noise; |x|^2 is the mean "
-           "over channels, d = image - reference r, w = 1 / (|r|^2 + (m / 10)^2), m the median of |r| where "
-           "it is not 0; in points the mean over seeds"},
+           "over channels, d = image - reference r, w = 1 / (l + m / 100), l = max(|r'|^2, |r|^2 / 4), r' "
+           "the mean of the 5 x 5 pixels around without the pixel itself, m the median of l where it is "
+           "not 0; in points the mean over seeds"},
           {"error_se",
            "standard error of error from the noise of the reference, which all seeds share, and with two "
            "seeds or more from their spread"},

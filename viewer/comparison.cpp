@@ -14,8 +14,7 @@ Reference::Reference(std::string name, const core::ImageChannels& image)
     if (pixels_.empty() ||
         !std::ranges::all_of(pixels_, [](const core::Rgb& c) { return core::is_finite(c); }))
         throw core::InputError("a reference has finite R, G and B", {name_, 0});
-    weights_ = variance_.empty() ? core::relative_weights(pixels_)
-                                 : core::relative_weights(pixels_, variance_, image.width, image.height);
+    weights_ = core::relative_weights(pixels_, variance_, image.width, image.height);
 }
 
 core::RelativeError Reference::error_of(const core::ImageChannels& image) const {

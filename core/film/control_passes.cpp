@@ -65,7 +65,7 @@ std::vector<double> importance_for_error(const Film& film) {
     const int width = film.width(), height = film.height();
     const Film::HalfBeauty a = film.half_beauty(0), b = film.half_beauty(1);
     const std::vector<Rgb> shown = film.beauty();
-    const RelativeWeights weights = relative_weights(shown);
+    const RelativeWeights weights = relative_weights(shown, width, height);
     std::vector<double> left(film.pixels()), noise(film.pixels()), edges(film.pixels());
     for (std::size_t p = 0; p < film.pixels(); ++p) {
         const double w = weights.weight[p];

@@ -222,13 +222,9 @@ class Film {
     void check_room(const Part& part, std::uint32_t more) const;
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
     bool has_replaced_variance() const;
-    bool every_layer_is_filtered() const;  ///< by halves: set_halves()
     std::optional<PictureError> error_of_halves(const ControlPixels& controls) const;
     std::optional<PictureError> error_of_groups() const;
     std::vector<PassGroup> groups_of_passes() const;
-    /// Variance of the beauty as it is shown: that of set_mean() in place of the variance of a layer's
-    /// passes.
-    std::vector<Rgb> shown_variance_of_mean(double unit) const;
     /// sum w v of a part as it is shown, with the gain of its passes, where that of its passes is `of_passes`
     /// without it.
     double shown_sum(const Part& part, double of_passes, double gain, std::span<const double> weights,

@@ -62,7 +62,7 @@ std::optional<PictureError> Film::error_of_groups() const {
         return group_error(groups, missing, weights);
     };
     return PictureError::of_all({error_by(relative_weights(picture, variance, width_, height_)),
-                                 error_by(weights_of_groups(groups, light)),
+                                 error_by(weights_of_groups(groups, light, width_, height_)),
                                  error_by(lower_weights(picture, variance, width_, height_))});
 }
 

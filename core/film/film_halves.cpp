@@ -4,7 +4,6 @@
 
 #include "core/film/film.h"
 #include "core/film/for_each_pixel.h"
-#include "core/metrics/halves_weights.h"
 
 namespace mote::core {
 
@@ -89,12 +88,6 @@ Film::HalfBeauty Film::half_beauty(int half) const {
     return result;
 }
 
-bool Film::every_layer_is_filtered() const {
-    for (std::size_t i = 0; i < layers_.size(); ++i)
-        if (!layers_[i].auxiliary && replaced_[i].halves[0].empty()) return false;
-    return true;
-}
-
 std::optional<PictureError> Film::error(const ControlPixels& controls) const {
     return split_ == PassSplit::halves   ? error_of_halves(controls)
            : split_ == PassSplit::groups ? error_of_groups()
@@ -112,30 +105,17 @@ std::optional<PictureError> Film::error_of_halves(const ControlPixels& controls)
     const HalfBeauty a = half_beauty(0), b = half_beauty(1);
     const std::array halves{PictureHalf{a.passes, a.shown, a.variance},
                             PictureHalf{b.passes, b.shown, b.variance}};
-    const std::vector<Rgb> picture = beauty();
-    const auto blocks = [&](const RelativeWeights& weights) {
-        return halves_error(halves, picture, weights, width_, height_);
-    };
-    const auto of_passes = [&](const BlockErrors& errors, const RelativeWeights& weights) {
-        return with_controls(errors.sum(), control_estimate(controls, halves, weights));
-    };
-    if (every_layer_is_filtered()) {
-        const RelativeWeights weights = relative_weights(picture);
-        BlockErrors errors = blocks(weights);
-        SquaredError of_picture = of_passes(errors, weights);
-        const double before = errors.sum().variance;
-        add_variance_of_weights(errors, halves, {relative_weights(a.shown), relative_weights(b.shown)},
-                                width_);
-        of_picture.variance += errors.sum().variance - before;
-        return error_interval(of_picture);
-    }
-    const auto interval = [&](const RelativeWeights& weights) {
-        return error_interval(of_passes(blocks(weights), weights));
-    };
-    const PictureError low =
-        interval(relative_weights(picture, shown_variance_of_mean(1.0), width_, height_));
-    const PictureError high = interval(weights_of_halves(a.shown, b.shown, width_, height_));
-    return PictureError::of_all({low, high});
+    const RelativeWeights weights =
+        relative_weights(mean_of_passes(), beauty_variance_of_mean(), width_, height_);
+    BlockErrors errors = halves_error(halves, weights, width_, height_);
+    SquaredError of_picture = with_controls(errors.sum(), control_estimate(controls, halves, weights));
+    const double before = errors.sum().variance;
+    add_variance_of_weights(errors, halves,
+                            {relative_weights(a.passes, a.variance, width_, height_),
+                             relative_weights(b.passes, b.variance, width_, height_)},
+                            width_);
+    of_picture.variance += errors.sum().variance - before;
+    return error_interval(of_picture);
 }
 
 }  // namespace mote::core

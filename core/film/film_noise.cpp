@@ -47,18 +47,6 @@ bool Film::has_replaced_variance() const {
 
 // A layer and the rest of its part come from the same paths, so the rest has what is left when the layer's
 // own variance is taken away, covariance included. Pixel by pixel that may be less than nothing.
-std::vector<Rgb> Film::shown_variance_of_mean(double unit) const {
-    std::vector<Rgb> result = beauty_variance_of_mean(unit);
-    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
-        const std::vector<float>& left = replaced_[layer].variance;
-        if (left.empty() || layers_[layer].auxiliary) continue;
-        const std::vector<Rgb> own = layer_variance_of_mean(layer, unit);
-        for (std::size_t p = 0; p < pixels(); ++p)
-            result[p] = glm::max(result[p] - own[p], Rgb(0.0f)) + Rgb(float(double(left[p]) / (unit * unit)));
-    }
-    return result;
-}
-
 double Film::shown_sum(const Part& part, double of_passes, double gain, std::span<const double> weights,
                        double unit) const {
     double rest = of_passes, filtered = 0.0, measured = 0.0;
@@ -79,12 +67,11 @@ Film::GainAndNoise Film::gain_and_noise() const {
     GainAndNoise result;
     if (!has_passes(2)) return result;
     const bool replaced = has_replaced_variance();
-    std::vector<Rgb> picture = replaced ? beauty() : mean_of_passes();
+    std::vector<Rgb> picture = mean_of_passes();
     const double unit = unit_of(picture);
     for (Rgb& p : picture) p /= float(unit);
-    const RelativeWeights weights = relative_weights(
-        picture, replaced ? shown_variance_of_mean(unit) : beauty_variance_of_mean(unit), width_, height_);
-    if (!(weights.noise_norm > 0.0)) {
+    const RelativeWeights weights = relative_weights(picture, beauty_variance_of_mean(unit), width_, height_);
+    if (!(weights.norm > 0.0)) {
         const bool black =
             std::all_of(picture.begin(), picture.end(), [](const Rgb& c) { return c == Rgb(0.0f); });
         if (black) result.noise = 0.0;
@@ -108,7 +95,8 @@ Film::GainAndNoise Film::gain_and_noise() const {
         shown += replaced ? shown_sum(parts_[i], sum, gain, weights.weight, unit) : gain * sum;
     }
     if (independent > 0.0) result.gain = expected / independent;
-    result.noise = std::sqrt(shown / weights.noise_norm);
+    // The norm is that of independent passes, whose mean has more noise.
+    result.noise = std::sqrt(shown / (weights.norm + independent - expected));
     return result;
 }
 

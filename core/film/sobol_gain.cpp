@@ -18,6 +18,7 @@ namespace mote::core {
 namespace {
 
 constexpr double usual_slope = 1.0;
+constexpr double slope_that_lasts = 0.75;  ///< beyond the largest blocks
 constexpr double changes_of_slope[] = {0.25, 0.5, 1.0, 2.0, 4.0};
 
 /// Kalman filter with the state (level, slope): means, covariances, and the log of the probability of all
@@ -63,10 +64,10 @@ Trend trend_of(std::span<const double> d, std::uint32_t n, double pixels, double
 }
 
 /// R[0], R[1], ... up to two beyond d. A sum of parts that fall at different rates falls ever slower: beyond
-/// the largest blocks at no more than the trend, and at no less than not at all; half the slope is between.
+/// the largest blocks at no more than the trend, and at no less than not at all.
 std::vector<double> spreads_of(std::span<const double> d, const Trend& trend) {
     const std::size_t top = d.size();
-    const double rate = std::exp2(0.5 * std::clamp(trend.slope, -2.0, 0.0));
+    const double rate = std::exp2(slope_that_lasts * std::clamp(trend.slope, -2.0, 0.0));
     std::vector<double> r(top + 2);
     r[top - 1] = std::exp2(trend.level) / (1.0 - rate / 2.0);  // Eq. (1)
     r[top] = r[top - 1] * rate, r[top + 1] = r[top] * rate;

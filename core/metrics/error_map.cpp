@@ -31,7 +31,7 @@ Rgb colour(double x) {
 
 }  // namespace
 
-std::vector<Rgb> error_map(std::span<const Rgb> image, std::span<const Rgb> reference,
+std::vector<Rgb> error_map(std::span<const Rgb> image, std::span<const Rgb> reference, int width, int height,
                            const ErrorScale& scale) {
     if (image.size() != reference.size()) throw std::invalid_argument("the pictures differ in size");
     if (!(scale.lowest > 0.0 && scale.lowest < scale.highest))
@@ -40,7 +40,7 @@ std::vector<Rgb> error_map(std::span<const Rgb> image, std::span<const Rgb> refe
     std::vector<Rgb> finite(reference.begin(), reference.end());
     for (Rgb& r : finite)
         if (!is_finite(r)) r = Rgb(0.0f);
-    const RelativeWeights weights = relative_weights(finite);
+    const RelativeWeights weights = relative_weights(finite, width, height);
     std::vector<Rgb> map(image.size());
     for (std::size_t i = 0; i < map.size(); ++i) {
         if (!is_finite(image[i]) || !is_finite(reference[i])) {

@@ -17,12 +17,12 @@ struct ErrorScale {
     double lowest = 1e-3, highest = 1.0;  ///< relative errors at the two ends; beyond them the ends' colours
 };
 inline constexpr const char* error_map_definition =
-    "|d| / sqrt(|r|^2 + (m / 10)^2), logarithmic, dark violet to yellow; magenta where a value is not finite";
+    "sqrt(w) |d|, logarithmic, dark violet to yellow; magenta where a value is not finite";
 
 /// Linear RGB for write_png(), pixel by pixel; where the reference is black all over, every error is large.
 /// Throws std::invalid_argument for pictures of different sizes
 /// or a scale without 0 < lowest < highest.
-std::vector<Rgb> error_map(std::span<const Rgb> image, std::span<const Rgb> reference,
+std::vector<Rgb> error_map(std::span<const Rgb> image, std::span<const Rgb> reference, int width, int height,
                            const ErrorScale& scale = {});
 
 }  // namespace mote::core

@@ -39,7 +39,7 @@ double product(const RelativeWeights& w, std::span<const Rgb> a, std::span<const
     double sum = 0.0;
     for (std::size_t p = 0; p < a.size(); ++p)
         sum += w.weight[p] * glm::dot(glm::dvec3(a[p]), glm::dvec3(b[p])) / 3.0;
-    return w.noise_norm > 0.0 ? sum / w.noise_norm : 0.0;
+    return w.norm > 0.0 ? sum / w.norm : 0.0;
 }
 
 /// Y_g - X
@@ -98,7 +98,7 @@ SquaredError missing_light(std::span<const PictureHalf> missing, const RelativeW
     const PictureHalf &a = missing[0], &b = missing[1];
     SquaredError result{.rest = product(weights, a.passes, b.passes), .norm = 1.0};
     for (std::size_t p = 0; p < weights.weight.size(); ++p) {
-        const double w = weights.weight[p] / weights.noise_norm, va = mean_of_channels(a.variance[p]),
+        const double w = weights.weight[p] / weights.norm, va = mean_of_channels(a.variance[p]),
                      vb = mean_of_channels(b.variance[p]);
         result.variance +=
             w * w *
@@ -152,6 +152,17 @@ void check(std::span<const PassGroup> groups, std::size_t pixels) {
     if (!fits) throw std::invalid_argument("groups of passes do not fit a picture");
 }
 
+/// Median over the groups, pixel by pixel.
+std::vector<double> medians(const std::vector<std::vector<double>>& groups) {
+    std::vector<double> result(groups[0].size()), here(groups.size());
+    for (std::size_t p = 0; p < result.size(); ++p) {
+        for (std::size_t g = 0; g < groups.size(); ++g) here[g] = groups[g][p];
+        std::sort(here.begin(), here.end());
+        result[p] = 0.5 * (here[(here.size() - 1) / 2] + here[here.size() / 2]);
+    }
+    return result;
+}
+
 SharedNoise noise_of(std::span<const PassGroup> groups, std::span<const Picture> d,
                      const RelativeWeights& weights) {
     const Gram gram = products(d, weights);
@@ -173,29 +184,30 @@ SharedNoise shared_noise(std::span<const PassGroup> groups, const RelativeWeight
     return noise_of(groups, deviations(groups), weights);
 }
 
-RelativeWeights weights_of_groups(std::span<const PassGroup> groups, std::span<const Rgb> missing) {
+RelativeWeights weights_of_groups(std::span<const PassGroup> groups, std::span<const Rgb> missing, int width,
+                                  int height) {
     const std::size_t pixels = groups.empty() ? 0 : groups[0].mean.size();
     check(groups, pixels);
     if (!missing.empty() && missing.size() != pixels)
         throw std::invalid_argument("light that is missing does not fit a picture");
-    std::vector<double> median(pixels), here(groups.size());
-    for (std::size_t p = 0; p < pixels; ++p) {
-        for (std::size_t g = 0; g < groups.size(); ++g)
-            here[g] = mean_square(glm::dvec3(groups[g].mean[p]) +
-                                  (missing.empty() ? glm::dvec3(0.0) : glm::dvec3(missing[p])));
-        std::sort(here.begin(), here.end());
-        median[p] = 0.5 * (here[(here.size() - 1) / 2] + here[here.size() / 2]);
+    std::vector<std::vector<double>> own, around;
+    for (const PassGroup& group : groups) {
+        Picture light = group.mean;
+        for (std::size_t p = 0; p < missing.size(); ++p) light[p] += missing[p];
+        around.push_back(light_squares(light, {}, width, height));
+        std::vector<double>& squares = own.emplace_back();
+        for (const Rgb& c : light) squares.push_back(mean_square(c));
     }
-    RelativeWeights result{weights_of_squares(median)};
-    for (std::size_t p = 0; p < pixels; ++p) result.noise_norm += result.weight[p] * median[p];
-    result.norm = result.noise_norm;
+    const std::vector<double> light = medians(own);
+    RelativeWeights result{weights_of_squares(medians(around))};
+    for (std::size_t p = 0; p < pixels; ++p) result.norm += result.weight[p] * light[p];
     return result;
 }
 
 PictureError group_error(std::span<const PassGroup> groups, std::span<const PictureHalf> missing,
                          const RelativeWeights& weights) {
     check(groups, weights.weight.size());
-    if (!(weights.noise_norm > 0.0)) return {};
+    if (!(weights.norm > 0.0)) return {};
     const std::vector<Picture> d = deviations(groups);
     const SharedNoise noise = noise_of(groups, d, weights);
     if (!(noise.squared > 0.0) || !std::isfinite(noise.squared)) return {};

@@ -66,9 +66,10 @@ struct SharedNoise {
 /// min_pass_groups, or where a size does not fit.
 SharedNoise shared_noise(std::span<const PassGroup> groups, const RelativeWeights& weights);
 
-/// Weights by the median over the groups of |Y_g + m|^2, pixel by pixel. `missing`: m without most of its
-/// noise; may be empty. Throws as shared_noise().
-RelativeWeights weights_of_groups(std::span<const PassGroup> groups, std::span<const Rgb> missing = {});
+/// Weights by medians over the groups, pixel by pixel, of light_squares() of Y_g + m; in the norm, of
+/// |Y_g + m|^2. `missing`: m without most of its noise; may be empty. Throws as shared_noise().
+RelativeWeights weights_of_groups(std::span<const PassGroup> groups, std::span<const Rgb> missing, int width,
+                                  int height);
 
 /// The error of the mean of all passes. `missing`: two halves of estimates of m, nothing shown of them
 /// (PictureHalf::shown is not read); none where nothing is missing. Not known where the weights are those of

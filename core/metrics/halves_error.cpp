@@ -32,6 +32,7 @@ struct Sums {
         const double va = mean_of_channels(halves[0].variance[p]),
                      vb = mean_of_channels(halves[1].variance[p]);
         v += w * (va + vb), v_squared += w * va * w * vb, pixels += 1.0;
+        norm += w * glm::dot(glm::dvec3(a), glm::dvec3(b)) / 3.0;
     }
     /// Eq. (3)
     double variance() const {
@@ -86,10 +87,10 @@ PictureError BlockErrors::of_block(std::size_t block) const {
     return error_interval({noise.at(block), rest.at(block), variance.at(block), norm.at(block)});
 }
 
-BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, std::span<const Rgb> r,
-                         const RelativeWeights& weights, int width, int height) {
+BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, const RelativeWeights& weights, int width,
+                         int height) {
     const std::size_t pixels = std::size_t(width) * std::size_t(height);
-    bool fits = r.size() == pixels && weights.weight.size() == pixels;
+    bool fits = weights.weight.size() == pixels;
     for (const PictureHalf& half : halves)
         fits = fits && half.passes.size() == pixels && half.shown.size() == pixels &&
                half.variance.size() == pixels;
@@ -99,13 +100,8 @@ BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, std::span<con
     constexpr int size = BlockErrors::size;
     blocks.columns = (width + size - 1) / size, blocks.rows = (height + size - 1) / size;
     std::vector<Sums> sums(std::size_t(blocks.columns) * std::size_t(blocks.rows));
-    // The norm has as little noise as that of the picture (RelativeWeights::noise_norm).
-    const double norm = weights.norm > 0.0 ? weights.noise_norm / weights.norm : 0.0;
-    for (std::size_t p = 0; p < pixels; ++p) {
-        Sums& block = sums[blocks.index_of(p, width)];
-        block.add(weights.weight[p], halves, p);
-        block.norm += norm * weights.weight[p] * mean_square(r[p]);
-    }
+    for (std::size_t p = 0; p < pixels; ++p)
+        sums[blocks.index_of(p, width)].add(weights.weight[p], halves, p);
     for (const Sums& block : sums) {
         blocks.noise.push_back(0.25 * block.shown), blocks.rest.push_back(block.residuals);
         blocks.variance.push_back(block.variance()), blocks.norm.push_back(block.norm);

@@ -88,7 +88,7 @@ struct BlockErrors {
     std::vector<double> noise;       ///< sum w |f_a - f_b|^2 / 4 of a block
     std::vector<double> rest;        ///< sum w <r_a, r_b> of a block, Eq. (2)
     std::vector<double> variance;    ///< of that sum, Eq. (3)
-    std::vector<double> norm;        ///< sum w |r|^2 of a block
+    std::vector<double> norm;        ///< sum w <a, b> of a block, whose mean is that of |r|^2
 
     std::size_t index_of(std::size_t pixel, int width) const;  ///< of the block of a pixel
     SquaredError sum() const;                                  ///< of all blocks together
@@ -96,13 +96,12 @@ struct BlockErrors {
     PictureError of_block(std::size_t block) const;  ///< of one, relative to its own light
 };
 
-/// `r`: the picture, whose light the errors are relative to. Throws std::invalid_argument when a size does
-/// not fit.
-BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, std::span<const Rgb> r,
-                         const RelativeWeights& weights, int width, int height);
+/// Throws std::invalid_argument when a size does not fit.
+BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, const RelativeWeights& weights, int width,
+                         int height);
 
 /// Adds Eq. (4) to the variance of each block of halves_error(): what noise in the weights does to its sums.
-/// `weights`: of what is shown of either half.
+/// `weights`: of the passes of either half.
 void add_variance_of_weights(BlockErrors& blocks, const std::array<PictureHalf, 2>& halves,
                              const std::array<RelativeWeights, 2>& weights, int width);
 

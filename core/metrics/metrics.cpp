@@ -20,7 +20,8 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr MetricDefinition definitions[] = {
     {"error",
      "square root of sum w |d|^2 / sum w |r|^2, without the reference's own noise where that is known; |x|^2 "
-     "is the mean over channels, w = 1 / (|r|^2 + (m / 10)^2), m the median of |r| where it is not 0",
+     "is the mean over channels, w = 1 / (l + m / 100), l = max(|r'|^2, |r|^2 / 4), r' the mean of the "
+     "5 x 5 pixels around without the pixel itself, m the median of l where it is not 0",
      &ImageMetrics::error},
     {"error_standard_error", "of error, from the noise of the reference",
      &ImageMetrics::error_standard_error},
@@ -103,8 +104,7 @@ void add_errors(std::span<const Rgb> image, std::span<const Rgb> reference, Imag
 void add_relative_error(std::span<const Rgb> image, std::span<const Rgb> reference, int width, int height,
                         const KnownVariances& variances, ImageMetrics& m) {
     const bool known = !variances.reference.empty();
-    const RelativeWeights weights =
-        known ? relative_weights(reference, variances.reference, width, height) : relative_weights(reference);
+    const RelativeWeights weights = relative_weights(reference, variances.reference, width, height);
     const RelativeError e = relative_error(image, reference, weights, variances.image, variances.reference);
     m.error = e.error, m.bias = e.bias;
     m.error_standard_error = known ? e.error_standard_error : not_a_number;

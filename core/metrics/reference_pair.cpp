@@ -6,23 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/metrics/neighbourhood.h"
-
 namespace mote::core {
-
-namespace {
-
-/// |r|^2 of the neighbours of a pixel alone, their mean.
-double neighbours_square(std::span<const Rgb> picture, int width, int height, int x, int y) {
-    const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
-    double sum = 0.0, count = 0.0;
-    for_each_near(x, y, width, height, [&](std::size_t q) {
-        if (q != p) sum += mean_square(picture[q]), count += 1.0;
-    });
-    return count > 0.0 ? sum / count : mean_square(picture[p]);
-}
-
-}  // namespace
 
 PairMean mean_of(const ReferencePair& pair) {
     if (pair.first.size() != pair.second.size()) throw std::invalid_argument("the references differ in size");
@@ -37,25 +21,10 @@ PairMean mean_of(const ReferencePair& pair) {
     return mean;
 }
 
-std::vector<double> weights_of_pair(const PairMean& mean, int width, int height) {
-    if (mean.picture.size() != std::size_t(width) * std::size_t(height))
-        throw std::invalid_argument("the pictures differ in size");
-    std::vector<double> squares(mean.picture.size());
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            squares[p] = std::max(neighbours_square(mean.picture, width, height, x, y),
-                                  certain_square(mean.picture[p], mean.variance[p]));
-        }
-    return weights_of_squares(squares);
-}
-
 RelativeError relative_error(std::span<const Rgb> image, const ReferencePair& pair, int width, int height,
                              std::span<const Rgb> image_variance) {
     const PairMean mean = mean_of(pair);
-    RelativeWeights weights{weights_of_pair(mean, width, height)};
-    for (std::size_t p = 0; p < mean.picture.size(); ++p)
-        weights.norm += weights.weight[p] * mean_square(mean.picture[p]);
+    const RelativeWeights weights = relative_weights(mean.picture, mean.variance, width, height);
     RelativeError result = relative_error(image, mean.picture, weights, image_variance, mean.variance);
     double error = 0.0, bias = 0.0, norm = 0.0, variance = 0.0;
     for (std::size_t p = 0; p < image.size(); ++p) {

@@ -7,9 +7,7 @@
 // in expectation, whatever their variances are; none has to be known. So a pair of 4 % judges errors of far
 // below 1 %, also where passes are not independent or outliers hide from estimates of variance.
 //
-// The weights must not depend on a pixel's noise either: |r|^2 is the mean of its neighbours', 5 x 5 pixels
-// without the pixel itself. Only a pixel that is brighter for certain, by three standard deviations, such as
-// a lamp or a glint, is weighted by its own value.
+// The weights (relative_error.h, Eq. 1) are those of the mean of both.
 //
 // The remaining error is the scatter of the product. Noises of different pixels of path-traced references are
 // independent, so its variance is the sum of its squares where noise dominates, and less where the error
@@ -34,10 +32,6 @@ struct PairMean {
 };
 /// Throws std::invalid_argument when the sizes differ.
 PairMean mean_of(const ReferencePair& pair);
-
-/// The weights w of a pair, row by row [1 / radiance^2]. Throws std::invalid_argument when a size does not
-/// fit.
-std::vector<double> weights_of_pair(const PairMean& mean, int width, int height);
 
 /// error and bias against the truth that both are estimates of. As always, the error is never below the bias.
 /// `image_variance` may be empty. Throws std::invalid_argument when a size does not fit.

@@ -14,14 +14,14 @@ namespace mote::core {
 
 namespace {
 
-constexpr double certain_deviations = 3.0;
-constexpr double darkest_fraction = 0.01;  ///< (1 / 10)^2 in Eq. (1)
+constexpr double darkest_fraction = 0.01;  ///< of m in Eq. (1)
+constexpr double pixels_of_a_glint = 4.0;  ///< that one pixel counts for at most
 
 void check_sizes(std::size_t a, std::size_t b) {
     if (a != b) throw std::invalid_argument("the pictures differ in size");
 }
 
-double median_that_is_not_black(const std::vector<double>& squares) {
+double median_that_is_not_black(std::span<const double> squares) {
     std::vector<double> lit;
     std::copy_if(squares.begin(), squares.end(), std::back_inserter(lit), [](double s) { return s > 0.0; });
     if (lit.empty()) return 0.0;
@@ -30,37 +30,21 @@ double median_that_is_not_black(const std::vector<double>& squares) {
     return *middle;
 }
 
-/// Eq. (1) from `squares`, |r|^2 pixel by pixel; m is the median of `level`.
-std::vector<double> weights_of(const std::vector<double>& squares, const std::vector<double>& level) {
-    const double darkest = darkest_fraction * median_that_is_not_black(level);
-    std::vector<double> weights(squares.size(), 0.0);
-    if (!(darkest > 0.0)) return weights;
-    std::transform(squares.begin(), squares.end(), weights.begin(),
-                   [darkest](double s) { return 1.0 / (s + darkest); });
-    return weights;
+/// |r|^2 that a pixel has for certain.
+double certain_square(const Rgb& c, const Rgb& variance) {
+    constexpr double deviations = 3.0;
+    return sqr(std::max(0.0, std::sqrt(mean_square(c)) - deviations * std::sqrt(mean_of_channels(variance))));
 }
 
-/// A noisy picture without most of its noise.
-struct Smoothed {
-    std::vector<double> others;  ///< |mean of the neighbours|^2, without the pixel itself where that can be
-    std::vector<double> all;     ///< the same with it
-};
-
-Smoothed smoothed(std::span<const Rgb> picture, std::span<const Rgb> variance, int width, int height) {
-    check_sizes(picture.size(), variance.size());
-    check_sizes(picture.size(), std::size_t(width) * std::size_t(height));
-    Smoothed s{std::vector<double>(picture.size()), std::vector<double>(picture.size())};
-    tbb::parallel_for(0, height, [&](int y) {
-        for (int x = 0; x < width; ++x) {
-            const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            const AlikeNeighbours near = alike_neighbours(picture, variance, x, y, width, height);
-            const glm::dvec3 here(picture[p]), all = (near.sum + here) / (near.count + 1.0);
-            const glm::dvec3 others = near.count > 0.0 ? near.sum / near.count : here;
-            s.others[p] = std::max(mean_square(others), certain_square(picture[p], variance[p]));
-            s.all[p] = mean_square(all);
-        }
+/// |r'|^2 of the neighbours' mean; of a picture of one pixel, its own.
+double square_of_neighbours(std::span<const Rgb> picture, int x, int y, int width, int height) {
+    const std::size_t here = std::size_t(y) * std::size_t(width) + std::size_t(x);
+    glm::dvec3 sum(0.0);
+    double count = 0.0;
+    for_each_near(x, y, width, height, [&](std::size_t q) {
+        if (q != here) sum += glm::dvec3(picture[q]), count += 1.0;
     });
-    return s;
+    return mean_square(count > 0.0 ? sum / count : glm::dvec3(picture[here]));
 }
 
 /// Variance of <r, x> where x has these variances and its channels move together.
@@ -74,47 +58,56 @@ double variance_of_product(const Rgb& r, const Rgb& variance) {
 
 }  // namespace
 
-double certain_square(const Rgb& c, const Rgb& variance) {
-    const double least =
-        std::sqrt(mean_square(c)) - certain_deviations * std::sqrt(mean_of_channels(variance));
-    return least > 0.0 ? least * least : 0.0;
+std::vector<double> light_squares(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,
+                                  int width, int height) {
+    check_sizes(picture.size(), std::size_t(width) * std::size_t(height));
+    if (!variance_of_mean.empty()) check_sizes(picture.size(), variance_of_mean.size());
+    std::vector<double> squares(picture.size());
+    tbb::parallel_for(0, height, [&](int y) {
+        for (int x = 0; x < width; ++x) {
+            const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            const double own = variance_of_mean.empty() ? mean_square(glm::dvec3(picture[p]))
+                                                        : certain_square(picture[p], variance_of_mean[p]);
+            squares[p] =
+                std::max(square_of_neighbours(picture, x, y, width, height), own / pixels_of_a_glint);
+        }
+    });
+    return squares;
 }
 
-std::vector<double> weights_of_squares(const std::vector<double>& squares) {
-    return weights_of(squares, squares);
+std::vector<double> weights_of_squares(std::span<const double> squares) {
+    const double darkest = darkest_fraction * median_that_is_not_black(squares);
+    std::vector<double> weights(squares.size(), 0.0);
+    if (!(darkest > 0.0)) return weights;
+    std::transform(squares.begin(), squares.end(), weights.begin(),
+                   [darkest](double s) { return 1.0 / (s + darkest); });
+    return weights;
 }
 
-RelativeWeights relative_weights(std::span<const Rgb> reference) {
-    std::vector<double> squares(reference.size());
-    std::transform(reference.begin(), reference.end(), squares.begin(),
-                   [](const Rgb& r) { return mean_square(r); });
-    RelativeWeights result{weights_of(squares, squares)};
-    for (std::size_t p = 0; p < squares.size(); ++p) result.norm += result.weight[p] * squares[p];
-    result.noise_norm = result.norm;
-    return result;
+RelativeWeights relative_weights(std::span<const Rgb> picture, int width, int height) {
+    return relative_weights(picture, {}, width, height);
 }
 
 RelativeWeights relative_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,
                                  int width, int height) {
-    const Smoothed squares = smoothed(picture, variance_of_mean, width, height);
-    RelativeWeights result{weights_of(squares.others, squares.all)};
+    RelativeWeights result{weights_of_squares(light_squares(picture, variance_of_mean, width, height))};
     for (std::size_t p = 0; p < picture.size(); ++p) {
-        result.norm += result.weight[p] * mean_square(picture[p]);
-        result.noise_norm += result.weight[p] * squares.all[p];
+        const double noise = variance_of_mean.empty() ? 0.0 : mean_of_channels(variance_of_mean[p]);
+        result.norm += result.weight[p] * (mean_square(glm::dvec3(picture[p])) - noise);
     }
     return result;
 }
 
 RelativeWeights lower_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean, int width,
                               int height) {
-    Smoothed squares = smoothed(picture, variance_of_mean, width, height);
-    for (std::size_t p = 0; p < picture.size(); ++p)
-        squares.others[p] =
-            std::max(squares.others[p], mean_square(picture[p]) + mean_of_channels(variance_of_mean[p]));
-    RelativeWeights result{weights_of(squares.others, squares.all)};
-    for (std::size_t p = 0; p < picture.size(); ++p)
-        result.noise_norm += result.weight[p] * squares.others[p];
-    result.norm = result.noise_norm;
+    std::vector<double> squares = light_squares(picture, variance_of_mean, width, height),
+                        own(picture.size());
+    for (std::size_t p = 0; p < picture.size(); ++p) {
+        own[p] = mean_square(picture[p]) + mean_of_channels(variance_of_mean[p]);
+        squares[p] = std::max(squares[p], own[p]);
+    }
+    RelativeWeights result{weights_of_squares(squares)};
+    for (std::size_t p = 0; p < picture.size(); ++p) result.norm += result.weight[p] * own[p];
     return result;
 }
 

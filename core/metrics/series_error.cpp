@@ -46,7 +46,7 @@ ErrorMeasure::ErrorMeasure(std::span<const Rgb> reference, std::span<const Rgb> 
     if (reference.size() != std::size_t(width) * std::size_t(height))
         throw std::invalid_argument("the pictures differ in size");
     const std::vector<Rgb> known = finite(variance, counted);
-    weight_ = (known.empty() ? relative_weights(a_) : relative_weights(a_, known, width, height)).weight;
+    weight_ = relative_weights(a_, known, width, height).weight;
     for (const Rgb& v : known) subtracted_.push_back(mean_of_channels(v));
     count(counted);
 }
@@ -56,7 +56,8 @@ ErrorMeasure::ErrorMeasure(const ReferencePair& pair, int width, int height,
     : a_(finite(pair.first, counted)), b_(finite(pair.second, counted)) {
     const std::vector<Rgb> first = finite(pair.first_variance, counted),
                            second = finite(pair.second_variance, counted);
-    weight_ = weights_of_pair(mean_of({a_, b_, first, second}), width, height);
+    const PairMean mean = mean_of({a_, b_, first, second});
+    weight_ = relative_weights(mean.picture, mean.variance, width, height).weight;
     count(counted);
 }
 
@@ -69,7 +70,8 @@ void ErrorMeasure::count(std::span<const std::uint8_t> counted) {
             continue;
         }
         ++counted_;
-        norm_ += weight_[p] * glm::dot(glm::dvec3(a_[p]), glm::dvec3(b_[p])) / 3.0;
+        const double noise = subtracted_.empty() ? 0.0 : subtracted_[p];
+        norm_ += weight_[p] * (glm::dot(glm::dvec3(a_[p]), glm::dvec3(b_[p])) / 3.0 - noise);
     }
     if (!(norm_ > 0.0)) norm_ = unknown;
 }

@@ -4,8 +4,7 @@
 Usage: coverage.py [--mote build/release/bin/mote] [--scenes A,B] [--methods "A;B"] [--seeds N] [--first-seed N] [--passes N] [--error E]
                    [--references FOLDER] [--reference-passes N] [--size WxH] [--threads N] [--csv FILE] [--cost] [--quick]
 Renders each scene (at 96 x 64 pixels without --size) with many seeds and compares each image, by `mote compare`, with a long reference of
-another seed, whose noise is subtracted (with two references the weights are those of neighbours, another measure where small
-lamps are in view). Prints for every scene and method the share of seeds whose
+another seed, whose noise is subtracted. Prints for every scene and method the share of seeds whose
 interval contains the true error, how many miss it on either side, true error and ends of the interval (root mean squares over
 seeds), and the share of an optimist: an interval of the same width around the noise, which ignores the bias of filters. A method whose error is not known states no interval. --csv adds a row for each scene and method to a file. --error E renders until the upper end is below E instead, and prints the
 share of seeds whose true error is between 0.6 and 1.0 of E: an interval that is evaluated until it is short enough contains

@@ -235,9 +235,9 @@ TEST_CASE("the map grows lighter with the error", "[command][compare]") {
     const Bitmap bytes = read_bitmap(folder.file("map.png"), true);
     CHECK(glm::length(bytes.pixels[0] * 255.0f - Rgb(0x44, 0x01, 0x54)) < 0.01f);
     CHECK(glm::length(bytes.pixels[99] * 255.0f - Rgb(0xfd, 0xe7, 0x25)) < 0.01f);
-    // In the middle of the scale, sqrt(0.001): the middle of viridis. d^2 / (r^2 + 0.01) with r = 2.
-    const float d = std::sqrt(1e-3f * 4.01f);
-    const Rgb middle = error_map(Pixels{Rgb(2.0f + d)}, Pixels{Rgb(2.0f)})[0];
+    // In the middle of the scale, sqrt(0.001): the middle of viridis. d^2 / (r^2 + r^2 / 100) with r = 2.
+    const float d = std::sqrt(1e-3f * 4.04f);
+    const Rgb middle = error_map(Pixels{Rgb(2.0f + d)}, Pixels{Rgb(2.0f)}, 1, 1)[0];
     CHECK(middle.g == Approx(0.283).epsilon(0.01));  // 0x91 decoded
     CHECK(folder.compare({"--map", "map.jpg"}).exit_code == 2);
 }

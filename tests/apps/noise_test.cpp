@@ -109,7 +109,7 @@ TEST_CASE("The noise predicts the true error within 20 % on eight scenes", "[noi
         const auto scene = core::load_scene(folder.file("scene.xml"), registry(), session::load_options({}));
         const core::Film long_one = render(*scene, reference_passes, 99);
         const auto reference = long_one.beauty();
-        const auto weights = core::relative_weights(reference);
+        const auto weights = core::relative_weights(reference, long_one.width(), long_one.height());
         // 24 is no power of two, for which Sobol points are made.
         for (const std::uint32_t passes : {16u, 24u, 64u}) {
             std::vector<double> errors, noises;  // squares, one per seed
@@ -142,7 +142,8 @@ TEST_CASE("A Cornell box, whose lamp is in the picture, stops where its error is
     const core::Film long_one = render(*scene, 10 * film.pass_count(), 99);
     const auto reference = long_one.beauty();
     const core::RelativeError e = core::relative_error(
-        film.beauty(), reference, core::relative_weights(reference), {}, long_one.beauty_variance_of_mean());
+        film.beauty(), reference, core::relative_weights(reference, film.width(), film.height()), {},
+        long_one.beauty_variance_of_mean());
     INFO(film.pass_count() << " passes, error " << e.error);
     CHECK(e.error == Approx(0.15).epsilon(0.2));
 }

@@ -44,7 +44,7 @@ Spread spread_of(const Scene& scene, const Integrator& integrator, std::uint32_t
         result.film.exchange_replaced();
         s.of_passes += std::pow(result.film.noise(), 2.0) / n;
     }
-    const RelativeWeights w = relative_weights(mean);
+    const RelativeWeights w = relative_weights(mean, scene.film().width, scene.film().height);
     std::vector<double> squares;
     for (const auto& picture : pictures) {
         double sum = 0.0;

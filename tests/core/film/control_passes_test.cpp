@@ -221,6 +221,9 @@ TEST_CASE("A film's error has a shorter interval with control pixels", "[film][c
         controls.chosen.push_back({p, {Rgb(1.0f), Rgb(1.0f)}, {}});
     const auto without = film.error(), with = film.error(controls);
     REQUIRE(with);
-    CHECK(with->error == Approx(0.1 / 1.1).epsilon(1e-3));
-    CHECK(with->high - with->low < 0.1 * (without->high - without->low));
+    // Relative to the light, 1. The passes' mean has 9 % of noise here, that of 14 neighbours at the border
+    // 2.5 %, a weight twice that; 64 of them, of which five share neighbours, err by 1.4 % together, and the
+    // error by half of that: four standard deviations.
+    CHECK(with->error == Approx(0.1).epsilon(4.0 * 0.007));
+    CHECK(with->high - with->low < 0.4 * (without->high - without->low));
 }

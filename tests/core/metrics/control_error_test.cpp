@@ -54,14 +54,14 @@ struct Coverage {
 
 Coverage coverage(const Filter& filter, std::uint64_t seeds, Fault fault = Fault::none) {
     const Image mu = truth(), variance = variance_of_noise(mu);
-    const RelativeWeights weights = relative_weights(mu);
+    const RelativeWeights weights = relative_weights(mu, width, height);
     Coverage result;
     double differences = 0.0, squares = 0.0;
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         const Image a = noisy(mu, 2 * seed), b = noisy(mu, 2 * seed + 1), fa = filter(a), fb = filter(b),
                     picture = mean_of(fa, fb);
         const std::array halves{PictureHalf{a, fa, variance}, PictureHalf{b, fb, variance}};
-        const SquaredError of_halves = halves_error(halves, picture, weights, width, height).sum();
+        const SquaredError of_halves = halves_error(halves, weights, width, height).sum();
         const ControlEstimate of_controls =
             control_estimate(controls_of(mu, a, seed, fault), halves, weights);
         const SquaredError both = with_controls(of_halves, of_controls);
@@ -109,7 +109,7 @@ TEST_CASE(
 
 TEST_CASE("Without control pixels the error is that of the halves", "[metrics][controls]") {
     const Image mu = truth(), a = noisy(mu, 1), b = noisy(mu, 2);
-    const RelativeWeights weights = relative_weights(mu);
+    const RelativeWeights weights = relative_weights(mu, width, height);
     const ControlEstimate none = control_estimate({}, {PictureHalf{a, a, a}, PictureHalf{b, b, b}}, weights);
     CHECK(std::isinf(none.variance(1.0)));
     const SquaredError before{1.0, 2.0, 3.0, 4.0}, after = with_controls(before, none);
@@ -152,13 +152,13 @@ TEST_CASE("The interval ends above where the estimate would be low by 1.96 stand
 TEST_CASE("One control pixel for each pixel, without noise, makes the error exact", "[metrics][controls]") {
     const Image mu = truth(), a = noisy(mu, 1), b = noisy(mu, 2), fa = wide(a), fb = wide(b),
                 none(pixels, Rgb(0.0f));
-    const RelativeWeights weights = relative_weights(mu);
+    const RelativeWeights weights = relative_weights(mu, width, height);
     const std::vector<float> ones(pixels, 1.0f);
     ControlPixels controls{{}, ones};
     for (std::size_t p = 0; p < pixels; ++p) controls.chosen.push_back({p, {mu[p], mu[p]}, {}});
     const std::array halves{PictureHalf{a, fa, none}, PictureHalf{b, fb, none}};
     const Image picture = mean_of(fa, fb);
-    const double noise = halves_error(halves, picture, weights, width, height).sum().noise;
+    const double noise = halves_error(halves, weights, width, height).sum().noise;
     const double error = relative_error(picture, mu, weights).error;
     CHECK(noise + control_estimate(controls, halves, weights).rest ==
           Approx(error * error * weights.norm).epsilon(1e-6));

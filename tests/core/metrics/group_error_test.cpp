@@ -107,7 +107,7 @@ Picture picture_of(const Method& m, std::uint64_t seed, std::uint32_t passes = 1
         result.variance[p] = (squares[p] / n - result.mean[p] * result.mean[p]) / (n - 1.0f);
         exact[p] = light(p);
     }
-    result.error = relative_error(result.mean, exact, relative_weights(exact)).error;
+    result.error = relative_error(result.mean, exact, relative_weights(exact, width, height)).error;
     return result;
 }
 
@@ -116,7 +116,7 @@ const RelativeWeights& exact_weights() {
     static const RelativeWeights weights = [] {
         Image exact(pixels);
         for (std::size_t p = 0; p < pixels; ++p) exact[p] = light(p);
-        return relative_weights(exact);
+        return relative_weights(exact, width, height);
     }();
     return weights;
 }
@@ -186,7 +186,9 @@ TEST_CASE("Noise that one pattern makes has one degree of freedom, that of pixel
         double sum = 0.0;
         for (std::uint64_t seed = 0; seed < 40; ++seed) {
             const Picture picture = picture_of(m, seed);
-            sum += shared_noise(picture.groups, weights_of_groups(picture.groups)).freedom / 40.0;
+            sum +=
+                shared_noise(picture.groups, weights_of_groups(picture.groups, {}, width, height)).freedom /
+                40.0;
         }
         return sum;
     };
@@ -201,17 +203,17 @@ TEST_CASE("Groups that do not fit are refused", "[metrics][groups]") {
     auto groups = picture.groups;
     groups[2].mean.pop_back();
     CHECK_THROWS_AS(group_error(groups, {}, exact_weights()), std::invalid_argument);
-    CHECK_THROWS_AS(weights_of_groups(groups), std::invalid_argument);
-    CHECK_THROWS_AS(weights_of_groups(picture.groups, Image(3)), std::invalid_argument);
+    CHECK_THROWS_AS(weights_of_groups(groups, {}, width, height), std::invalid_argument);
+    CHECK_THROWS_AS(weights_of_groups(picture.groups, Image(3), width, height), std::invalid_argument);
     groups = picture.groups, groups[2].passes = 0.0;
     CHECK_THROWS_AS(group_error(groups, {}, exact_weights()), std::invalid_argument);
     for (PassGroup& group : groups) group.passes = 2.0, group.mean.assign(pixels, Rgb(0.0f));
-    CHECK(std::isinf(group_error(groups, {}, weights_of_groups(groups)).high));
+    CHECK(std::isinf(group_error(groups, {}, weights_of_groups(groups, {}, width, height)).high));
 }
 
 TEST_CASE("Weights of groups are those of the light, whatever a splotch shows", "[metrics][groups]") {
     const Picture picture = picture_of({.modes = 0, .own = 0.1f, .splotches = 0.3f}, 5);
-    const RelativeWeights weights = weights_of_groups(picture.groups);
+    const RelativeWeights weights = weights_of_groups(picture.groups, {}, width, height);
     double worst = 0.0;
     for (std::size_t p = 0; p < pixels; ++p)
         worst = std::max(worst, std::fabs(std::log(weights.weight[p] / exact_weights().weight[p])));

@@ -7,6 +7,7 @@
 #include "core/math/random.h"
 #include "core/metrics/reference_pair.h"
 #include "core/metrics/relative_error.h"
+#include "core/metrics/series_error.h"
 #include "tests/support/catch.h"
 
 using namespace mote::core;
@@ -31,7 +32,7 @@ Picture scene_picture(float scale = 1.0f, float lamp = 1000.0f) {
 }
 
 RelativeError error_of(const Picture& image, const Picture& reference) {
-    return relative_error(image, reference, relative_weights(reference));
+    return relative_error(image, reference, relative_weights(reference, width, height));
 }
 
 double normal(Rng& rng) {
@@ -85,12 +86,13 @@ TEST_CASE("An error is never below the bias that it contains", "[relative]") {
         CHECK(std::abs(e.bias) > 0.01);
         // Nor is it where the noise of the reference would take more away than there is.
         const Picture large(reference.size(), Rgb(1e6f));
-        const RelativeError noisy = relative_error(image, reference, relative_weights(reference), {}, large);
+        const RelativeError noisy =
+            relative_error(image, reference, relative_weights(reference, width, height), {}, large);
         CHECK(noisy.error >= std::abs(noisy.bias));
     }
 }
 
-TEST_CASE("The error has no scale, and a lamp counts by its pixels", "[relative]") {
+TEST_CASE("The error has no scale, and a pixel of a lamp counts for four at most", "[relative]") {
     const auto noisy = [](Picture image) {
         for (std::size_t i = 0; i < image.size(); ++i)
             if (image[i].x < 500.0f) image[i] *= i % 2 ? 1.25f : 0.75f;
@@ -99,7 +101,17 @@ TEST_CASE("The error has no scale, and a lamp counts by its pixels", "[relative]
     const Picture one = scene_picture(), bright = scene_picture(1e6f, 1.0f);
     const double error = error_of(noisy(scene_picture(1.0f, 400.0f)), scene_picture(1.0f, 400.0f)).error;
     CHECK(error > 0.2);
-    CHECK(error_of(noisy(one), one).error == Approx(error).epsilon(0.01));  // 4 of 324 lit pixels are exact
+    // The lamp is exact, the relative error of all others is a quarter.
+    const RelativeWeights weights = relative_weights(one, width, height);
+    double of_lamp = 0.0;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        const double counts = weights.weight[i] * mean_square(glm::dvec3(one[i]));
+        CHECK(counts <= 4.0);
+        if (one[i].x > 500.0f) of_lamp += counts;
+    }
+    CHECK(of_lamp < 0.08 * weights.norm);
+    CHECK(error_of(noisy(one), one).error ==
+          Approx(0.25 * std::sqrt(1.0 - of_lamp / weights.norm)).epsilon(1e-5));
     const Picture faint = scene_picture(1e-6f, 400.0f);
     CHECK(error_of(noisy(faint), faint).error == Approx(error).epsilon(1e-3));
     // Counterexample: in an error relative to the mean, the lamp hides the noise of everything else.
@@ -166,7 +178,7 @@ TEST_CASE("Two noisy references add nothing to a bias", "[relative][statistics]"
             a[i] *= float(1.0 + 0.2 * normal(rng));
             b[i] *= float(1.0 + 0.2 * normal(rng));
         }
-        one += relative_error(image, a, relative_weights(truth), {}, variance).bias / n;
+        one += relative_error(image, a, relative_weights(truth, width, height), {}, variance).bias / n;
         const double e = relative_error(image, {a, b, variance, variance}, width, height).bias;
         two += e / n, squares += e * e / n;
     }
@@ -182,8 +194,9 @@ TEST_CASE("Two references of 40 % without variances judge an error of 5 %", "[re
     Picture image = truth;
     Rng image_rng(78);
     for (Rgb& p : image) p *= float(1.01 + 0.05 * normal(image_rng));
-    const int n = 300;
-    double exact = 0.0, mean = 0.0, squares = 0.0, variances = 0.0;
+    const int n = 600;
+    const double exact = error_of(image, truth).error;
+    double mean = 0.0, squares = 0.0, variances = 0.0;
     for (int seed = 0; seed < n; ++seed) {
         Picture a = truth, b = truth;
         Rng rng(hash_keys(7, std::uint64_t(seed)));
@@ -192,19 +205,19 @@ TEST_CASE("Two references of 40 % without variances judge an error of 5 %", "[re
                 // An exponential value, mostly less than the truth and sometimes twice as much: variance
                 // 0.16. A lamp that is seen has no noise.
                 if (p.x < 500.0f) p *= 0.6f - 0.4f * std::log(1.0f - rng.next_float());
-        const ReferencePair pair{a, b, {}, {}};
-        const RelativeError e = relative_error(image, pair, width, height);
-        exact += relative_error(image, ReferencePair{truth, truth, {}, {}}, width, height).error / n;
-        const double squared = e.error * e.error, more = e.error + e.error_standard_error;
-        mean += squared / n, squares += squared * squared / n;
-        variances += (more * more - squared) * (more * more - squared) / n;
+        // Its square may be below 0: cut there, or at the bias, its mean would be twice as large.
+        const SeriesError e =
+            ErrorMeasure(ReferencePair{a, b, {}, {}}, width, height).measure(std::vector<Picture>{image});
+        mean += e.squared_error / n, squares += e.squared_error * e.squared_error / n;
+        variances += sqr(sqr(e.error + e.error_standard_error) - sqr(e.error)) / n;
     }
     const double variance = squares - mean * mean;
     INFO("exact " << exact << ", square " << mean << " +- " << std::sqrt(variance / n) << ", spread "
                   << std::sqrt(variance) << ", stated " << std::sqrt(variances));
     CHECK(std::sqrt(variance / n) < 0.2 * exact * exact);
     CHECK(std::abs(mean - exact * exact) < 4.0 * std::sqrt(variance / n));
-    CHECK(variances > variance);  // squares that are cut at zero spread less than what was stated
+    // The mean of n squares, whose own spread over pixels is that of exponential values.
+    CHECK(variances == Approx(variance).epsilon(0.25));
 }
 
 TEST_CASE("The noise of a film is the error that it has", "[relative][film][statistics]") {
@@ -217,7 +230,7 @@ TEST_CASE("The noise of a film is the error that it has", "[relative][film][stat
                 const Film film = noisy_film(truth, passes, std::uint64_t(seed), stratified && passes >= 16);
                 const double e = error_of(film.beauty(), truth).error;
                 errors += e * e / seeds, noises += film.noise() / seeds;
-                const RelativeWeights weights = relative_weights(truth);
+                const RelativeWeights weights = relative_weights(truth, width, height);
                 of_passes +=
                     relative_error(film.beauty(), truth, weights, film.beauty_variance_of_mean()).noise /
                     seeds;
