@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "apps/render_messages.h"
+#include "session/coarse_preview.h"
 #include "session/preview.h"
 
 namespace mote::apps {
@@ -28,6 +29,7 @@ bool waits_for_reader(const RenderFiles& files) {
 CommandObserver::CommandObserver(const RenderArguments& arguments, const RenderFiles& files,
                                  const LoadedScene& scene, int threads, Interruption& interruption)
     : arguments_(arguments),
+      scene_(scene),
       preview_file_(waits_for_reader(files) ? "" : files.preview),
       interruption_(interruption),
       line_(first_line(scene, threads), arguments.quiet) {
@@ -38,6 +40,15 @@ CommandObserver::CommandObserver(const RenderArguments& arguments, const RenderF
 void CommandObserver::preview(const core::ImageChannels& image) {
     if (!preview_file_.empty()) write_preview(preview_file_, image, arguments_.exposure);
     show(image.rgb(""));
+}
+
+void CommandObserver::show_coarse(const RenderSettings& settings) {
+    const bool watched = wants_previews() && (!arguments_.quiet || viewer_);
+    if (!watched || !session::coarse_preview_pays(scene_, settings)) return;
+    const auto image = session::coarse_preview(scene_, settings, *this);
+    if (!image) return;
+    preview(*image);
+    showed_whole_ = true;
 }
 
 bool CommandObserver::preview_is_seen() const {

@@ -29,6 +29,10 @@ class CommandObserver : public RenderObserver {
     /// Without progress, previews are for a look into a long render. With a limit of time they are made as
     /// always, since they measure how long the denoiser will take.
     bool preview_is_seen() const override;
+    /// Where a picture of the whole is shown already, no part of it takes its place.
+    bool previews_are_whole() const override { return showed_whole_; }
+    /// At half the resolution, before the first pass, where it is worth its time.
+    void show_coarse(const RenderSettings& settings);
     void warning(const std::string& text) override;
     void building_is_over() override;
     /// The last line of progress ends, and the viewer receives the final picture.
@@ -38,10 +42,12 @@ class CommandObserver : public RenderObserver {
     void show(std::vector<core::Rgb> picture);
 
     const RenderArguments& arguments_;
+    const LoadedScene& scene_;
     const std::string preview_file_;
     Interruption& interruption_;
     ProgressLine line_;
     std::optional<TevViewer> viewer_;
+    bool showed_whole_ = false;
     const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

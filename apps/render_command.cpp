@@ -143,6 +143,7 @@ int render_command(const RenderArguments& arguments) {
     warn_before(arguments, scene, files);
     interruption.end_at_once_while("building");
     CommandObserver observer(arguments, files, scene, threads.count(), interruption);
+    observer.show_coarse(settings);
     settings.seconds_before = seconds_since(start);
     if (arguments.seconds) settings.seconds_after = seconds_to_write(scene);
     Rendered rendered = session::render(scene, settings, observer);

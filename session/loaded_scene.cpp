@@ -25,6 +25,12 @@ core::LoadOptions load_options(const SceneChanges& changes) {
     return options;
 }
 
+SceneChanges at_size(SceneChanges changes, int width, int height) {
+    changes.defines.emplace_back("film.width", std::to_string(width));
+    changes.defines.emplace_back("film.height", std::to_string(height));
+    return changes;
+}
+
 std::vector<std::string> define_texts(const SceneChanges& changes) {
     std::vector<std::string> texts;
     for (const auto& [name, value] : changes.defines) texts.push_back(name + "=" + value);

@@ -27,6 +27,8 @@ struct SceneChanges {
 
 /// The options of the loader for them. A scene without an integrator gets `mote_layers`.
 core::LoadOptions load_options(const SceneChanges& changes);
+/// `changes` with a film of another size.
+SceneChanges at_size(SceneChanges changes, int width, int height);
 /// "name=value" of each definition.
 std::vector<std::string> define_texts(const SceneChanges& changes);
 /// The options of `mote render` that make these changes.

@@ -119,6 +119,7 @@ class RenderWork {
         r.preview_every_seconds = observer.preview_every_seconds();
         r.preview_share = observer.preview_share();
         r.first_preview_is_raw = observer.first_preview_is_raw();
+        r.previews_are_whole = observer.previews_are_whole();
         r.finish = settings_.finish;
         r.preview_is_seen = [&observer] { return observer.preview_is_seen(); };
         if (wants_previews_)

@@ -35,6 +35,8 @@ class RenderObserver {
     virtual double preview_share() const { return 0.05; }         ///< of the time, that previews take at most
     /// True: the first preview comes at once, before any filter.
     virtual bool first_preview_is_raw() const { return false; }
+    /// True: none of a picture some of whose layers have no pass yet.
+    virtual bool previews_are_whole() const { return false; }
     /// Called in the thread of the passes: false spares the work of a preview.
     virtual bool preview_is_seen() const { return true; }
     virtual void warning(const std::string&) {}  ///< at once: a checkpoint that could not be written

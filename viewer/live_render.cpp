@@ -64,12 +64,6 @@ LoadedScene changed(const LoadedScene& scene, const SceneChanges& changes) {
     return same(scene.changes(), wanted) ? scene : scene.reloaded(wanted);
 }
 
-SceneChanges at_size(SceneChanges changes, int width, int height) {
-    changes.defines.emplace_back("film.width", std::to_string(width));
-    changes.defines.emplace_back("film.height", std::to_string(height));
-    return changes;
-}
-
 }  // namespace
 
 class LiveRender::Observer : public session::RenderObserver {
@@ -194,7 +188,7 @@ void LiveRender::show_coarse(const Wish& wish, std::uint64_t change) {
 double LiveRender::show_at_size(const Wish& wish, std::uint64_t change, const LoadedScene& loaded, int width,
                                 int height) {
     const double start = core::wall_seconds();
-    const SceneChanges changes = at_size(wish.changes, width, height);
+    const SceneChanges changes = session::at_size(wish.changes, width, height);
     coarse_scene_ = changed(coarse_scene_ ? *coarse_scene_ : loaded, changes);
     const LoadedScene scene = with_integrator(*coarse_scene_, changes);
     session::RenderSettings settings;

@@ -228,7 +228,8 @@ class PassLoop {
         // since to finish them would put off the others.
         constexpr double patience = 2.5;
         const bool whole = result_.film.has_passes(1);
-        if (!whole && (!seen || seconds_since(start_) < patience)) return;
+        const bool too_early = request_.previews_are_whole || seconds_since(start_) < patience;
+        if (!whole && (!seen || too_early)) return;
         if (previews_ > 0 && !is_due_again(seen)) return;
         const Clock::time_point begin = Clock::now();
         const double once = runner_.estimator().seconds_once();

@@ -65,13 +65,14 @@ struct RenderRequest {
     std::function<bool(const Film&)> enough;  ///< a rule of the caller's, tested with the noise rule
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after
-    /// some seconds those that have one, and then now and then; and its error, or nothing where that is not
-    /// known. May be empty.
+    /// some seconds those that have one (unless `previews_are_whole`), and then now and then; and its error,
+    /// or nothing where that is not known. May be empty.
     std::function<void(const Film&, const std::optional<PictureError>&)> preview;
     double preview_every_seconds = 1.0;     ///< shortest time between two of them
     double preview_share = 0.05;            ///< of the time that they take at most
     std::function<bool()> preview_is_seen;  ///< false: a preview would have no use now; empty: always true
     bool first_preview_is_raw = false;      ///< at once, without Estimator::finish()
+    bool previews_are_whole = false;        ///< none of a picture some of whose parts have no pass
     bool finish = true;                     ///< false: the picture is left as the passes made it
     std::function<void(const std::string&)> checkpoint_failed;  ///< called at once; retried later
     std::function<void()> building_is_over;           ///< called before the first pass; may be empty
