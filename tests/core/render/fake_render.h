@@ -4,6 +4,8 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "core/geometry/triangle_mesh.h"
 #include "core/materials/bsdf.h"
@@ -142,5 +144,16 @@ class CountingIntegrator final : public core::Integrator {
     BeforePass before_;
     std::string second_layer_;
 };
+
+inline core::RenderRequest request_for(std::uint32_t passes, const std::string& checkpoint = "") {
+    core::RenderRequest request;
+    request.seed = 9;
+    request.stop.passes = passes;
+    request.checkpoint_path = checkpoint;
+    request.content_hash = "0123456789abcdef";
+    return request;
+}
+
+inline std::vector<std::byte> bits(const core::RenderResult& result) { return result.film.serialize(); }
 
 }  // namespace mote::tests
