@@ -175,10 +175,8 @@ class Film {
     /// or from their groups and the light that is missing (core/metrics/group_error.h), without post-process.
     /// Nothing where the film keeps neither, a half of a part has fewer than two passes, a group none, or a
     /// post-process has not worked on the halves.
-    /// Weights of errors are relative to the light of a pixel. Where every layer is filtered, that is the
-    /// picture's. Else it is known with noise, and the interval holds what several kinds of weights make of
-    /// it: by the picture, a rare bright path is taken for a bright place, where it counts for little; by the
-    /// darker half where the halves differ much, a lamp that one has missed for a dark one.
+    /// Weights of errors are those of the passes' mean. That of groups is less certain, and the interval
+    /// holds what several kinds of weights make of it.
     /// `controls`: pixels with samples of their own (control_passes.h), which make the interval of halves
     /// shorter; may be empty.
     std::optional<PictureError> error(const ControlPixels& controls = {}) const;

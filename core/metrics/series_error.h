@@ -1,7 +1,7 @@
 // Errors of many pictures against the same references: each by itself, and several of one method together.
 //
-// With the weights w of relative_error.h, or those of reference_pair.h for a pair a, b, and n independent
-// pictures x_i, which differ in their seeds:
+// With the weights w of relative_error.h, for a pair a, b those of its mean, and n independent pictures x_i,
+// which differ in their seeds:
 //
 //   norm          = sum w <a, b>
 //   error_i^2     = sum w <x_i - a, x_i - b> / norm                                           (1)

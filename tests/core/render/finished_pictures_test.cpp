@@ -1,4 +1,4 @@
-// What the driver does with finished pictures: previews, interruptions, limits in time, and the noise.
+// Finished pictures of the driver: previews, interruptions, limits in time, and the noise.
 #include <chrono>
 #include <set>
 #include <thread>
