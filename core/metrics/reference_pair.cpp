@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 namespace mote::core {
@@ -24,26 +23,25 @@ PairMean mean_of(const ReferencePair& pair) {
 RelativeError relative_error(std::span<const Rgb> image, const ReferencePair& pair, int width, int height,
                              std::span<const Rgb> image_variance) {
     const PairMean mean = mean_of(pair);
-    const RelativeWeights weights = relative_weights(mean.picture, mean.variance, width, height);
+    RelativeWeights weights = relative_weights(mean.picture, mean.variance, width, height);
+    weights.norm = 0.0;  // that of the products, whatever is known of variances
+    for (std::size_t p = 0; p < mean.picture.size(); ++p)
+        weights.norm +=
+            weights.weight[p] * glm::dot(glm::dvec3(pair.first[p]), glm::dvec3(pair.second[p])) / 3.0;
     RelativeError result = relative_error(image, mean.picture, weights, image_variance, mean.variance);
-    double error = 0.0, bias = 0.0, norm = 0.0, variance = 0.0;
+    if (!(weights.norm > 0.0)) return result;
+    double error = 0.0, bias = 0.0, variance = 0.0;
     for (std::size_t p = 0; p < image.size(); ++p) {
         const double w = weights.weight[p];
         const glm::dvec3 x(image[p]), a(pair.first[p]), b(pair.second[p]);
         const double product = glm::dot(x - a, x - b) / 3.0;
-        error += w * product, norm += w * glm::dot(a, b) / 3.0;
+        error += w * product, variance += w * w * product * product;
         bias += w * 0.5 * (glm::dot(a, x - b) + glm::dot(b, x - a)) / 3.0;
-        variance += w * w * product * product;
     }
-    if (!(norm > 0.0)) {
-        const double unknown = std::numeric_limits<double>::quiet_NaN();
-        return {unknown, unknown, unknown, unknown, unknown};
-    }
-    const double to_pair = weights.norm / norm;  // one reference's noise is in |r|^2, none in <a, b>
-    result.bias = bias / norm, result.bias_standard_error *= to_pair, result.noise *= std::sqrt(to_pair);
-    const double squared = std::max(error / norm, result.bias * result.bias);
+    result.bias = bias / weights.norm;
+    const double squared = std::max(error / weights.norm, result.bias * result.bias);
     result.error = std::sqrt(squared);
-    result.error_standard_error = std::sqrt(squared + std::sqrt(variance) / norm) - result.error;
+    result.error_standard_error = std::sqrt(squared + std::sqrt(variance) / weights.norm) - result.error;
     return result;
 }
 

@@ -209,32 +209,23 @@ TEST_CASE("a render that is interrupted while its picture is finished is finishe
 namespace {
 
 /// Noise in one layer, of which a hundredth of the variance is left when it is finished.
-class FilteringIntegrator final : public Integrator {
+class FilteringEstimator final : public Estimator {
   public:
-    std::string type() const override { return "filtering"; }
-    std::vector<Layer> layers(const Scene&) const override { return {{"direct", "", false, true}}; }
-    Plan plan(const Scene&, const Requirements&) const override { return {}; }
-    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
-        return std::make_unique<Pass>();
+    static std::vector<Layer> layers() { return {{"direct", "", false, true}}; }
+    bool pass(const PassContext& context, PassImage& image) override {
+        std::uint64_t i = 0;
+        for (Rgb& pixel : image.layer(0))
+            pixel = Rgb(0.5f + Sampler(SamplerKind::independent, 1, context.index, i++).next_1d());
+        return true;
     }
-
-  private:
-    class Pass final : public Estimator {
-      public:
-        bool pass(const PassContext& context, PassImage& image) override {
-            std::uint64_t i = 0;
-            for (Rgb& pixel : image.layer(0))
-                pixel = Rgb(0.5f + Sampler(SamplerKind::independent, 1, context.index, i++).next_1d());
-            return true;
-        }
-        void finish(Film& film, CancelToken) override {
-            std::vector<float> left;
-            for (const Rgb& v : film.layer_variance_of_mean(0)) left.push_back(0.01f * average(v));
-            film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(1.0f)), left);
-        }
-        bool changes_noise(const Film&) const override { return true; }
-    };
+    void finish(Film& film, CancelToken) override {
+        std::vector<float> left;
+        for (const Rgb& v : film.layer_variance_of_mean(0)) left.push_back(0.01f * average(v));
+        film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(1.0f)), left);
+    }
+    bool changes_noise(const Film&) const override { return true; }
 };
+using FilteringIntegrator = IntegratorOf<FilteringEstimator>;
 
 }  // namespace
 

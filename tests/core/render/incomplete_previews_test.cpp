@@ -6,9 +6,10 @@
 #include "core/render/render_driver.h"
 #include "tests/core/render/fake_render.h"
 #include "tests/support/catch.h"
+#include "tests/support/integrator_of.h"
 
 using namespace mote::core;
-using mote::tests::fake_scene;
+using namespace mote::tests;
 
 namespace {
 
@@ -16,6 +17,11 @@ namespace {
 /// one of the second.
 class SlowEstimator final : public Estimator {
   public:
+    static std::vector<Layer> layers() {
+        std::vector<Layer> layers = {{"direct", ""}, {"indirect", ""}};
+        layers[1].part = 1;
+        return layers;
+    }
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.part == 0 && context.index < 2)
             std::this_thread::sleep_for(std::chrono::milliseconds(1500));
@@ -29,20 +35,7 @@ class SlowEstimator final : public Estimator {
         film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(2.0f)));
     }
 };
-
-class SlowIntegrator final : public Integrator {
-  public:
-    std::string type() const override { return "slow"; }
-    std::vector<Layer> layers(const Scene&) const override {
-        std::vector<Layer> layers = {{"direct", ""}, {"indirect", ""}};
-        layers[1].part = 1;
-        return layers;
-    }
-    Plan plan(const Scene&, const Requirements&) const override { return {}; }
-    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
-        return std::make_unique<SlowEstimator>();
-    }
-};
+using SlowIntegrator = IntegratorOf<SlowEstimator>;
 
 /// The light of each preview in the first pixel.
 std::vector<float> previews(bool are_whole) {
