@@ -100,9 +100,12 @@ std::optional<PictureError> Film::error_of_halves(const ControlPixels& controls)
     for (std::size_t i = 0; i < layers_.size(); ++i)
         if (!layers_[i].auxiliary && !replaced_[i].mean.empty() && replaced_[i].halves[0].empty())
             return std::nullopt;
-    // Without the gain of Sobol points, which is pooled over the picture: the pixels that Eq. (3) of
-    // halves_error.h depends on most are those of rare bright paths, where there is none.
-    const HalfBeauty a = half_beauty(0), b = half_beauty(1);
+    HalfBeauty a = half_beauty(0), b = half_beauty(1);
+    // The gain of Sobol points is pooled over the picture. Where rare bright paths make the noise there is
+    // none.
+    const auto gain = float(gain_and_noise().gain);
+    for (auto* variance : {&a.variance, &b.variance})
+        for (Rgb& v : *variance) v *= gain;
     const std::array halves{PictureHalf{a.passes, a.shown, a.variance},
                             PictureHalf{b.passes, b.shown, b.variance}};
     const RelativeWeights weights =

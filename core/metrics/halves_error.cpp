@@ -34,10 +34,13 @@ struct Sums {
         v += w * (va + vb), v_squared += w * va * w * vb, pixels += 1.0;
         norm += w * glm::dot(glm::dvec3(a), glm::dvec3(b)) / 3.0;
     }
+    double k() const { return raw > 0.0 ? both / raw : 0.0; }
+    double noise() const { return 0.25 * shown; }
+    /// Eq. (4)
+    double bound() const { return sqr(noise()) + sqr(sqr(2.0 * k())) * v_squared; }
     /// Eq. (3)
     double variance() const {
-        const double k = raw > 0.0 ? both / raw : 0.0;
-        const double others = std::max(0.0, shown - k * k * raw);
+        const double others = std::max(0.0, shown - sqr(k()) * raw);
         const double left = raw_squared > 0.0 ? left_squared / raw_squared : 1.0;
         return left * v_squared + (others + std::max(0.0, residuals)) / pixels * v;
     }
@@ -47,6 +50,15 @@ double sum_of(const std::vector<double>& values) {
     double sum = 0.0;
     for (const double value : values) sum += value;
     return sum;
+}
+
+MeanInterval interval_of_rest(const SquaredError& e) {
+    const double s = std::sqrt(e.variance), above = std::sqrt(e.variance + e.more_above),
+                 over = e.rest - e.lowest_rest;
+    if (!std::isfinite(over) || !(s > 0.0))
+        return {e.rest - normal_quantile * s, e.rest + normal_quantile * above};
+    return {e.lowest_rest + s * interval_of_bounded_mean(over / s).low,
+            e.lowest_rest + above * interval_of_bounded_mean(over / above).high};
 }
 
 }  // namespace
@@ -67,10 +79,11 @@ PictureError error_interval(const SquaredError& e) {
     PictureError result;
     if (!(e.norm > 0.0) || !std::isfinite(e.variance)) return result;
     const double squared = e.noise + e.rest, above = std::sqrt(e.variance + e.more_above);
+    const MeanInterval rest = interval_of_rest(e);
     result.error = std::sqrt(std::max(squared, e.noise) / e.norm);
-    result.low = std::sqrt(std::max(0.0, squared - normal_quantile * std::sqrt(e.variance)) / e.norm);
-    result.high = std::sqrt(std::max(squared + normal_quantile * above, e.noise) / e.norm);
-    result.rule_high = std::sqrt((std::max(squared, e.noise) + quantile_of_two * above) / e.norm);  // Eq. (5)
+    result.low = std::sqrt(std::max(0.0, e.noise + rest.low) / e.norm);
+    result.high = std::sqrt(std::max(e.noise + rest.high, e.noise) / e.norm);
+    result.rule_high = std::sqrt((std::max(squared, e.noise) + quantile_of_two * above) / e.norm);  // Eq. (6)
     return result;
 }
 
@@ -80,11 +93,15 @@ std::size_t BlockErrors::index_of(std::size_t pixel, int width) const {
 }
 
 SquaredError BlockErrors::sum() const {
-    return {sum_of(noise), sum_of(rest), sum_of(variance), sum_of(norm)};
+    SquaredError result{sum_of(noise), sum_of(rest), sum_of(variance), sum_of(norm)};
+    result.lowest_rest = -std::sqrt(sum_of(bound));
+    return result;
 }
 
 PictureError BlockErrors::of_block(std::size_t block) const {
-    return error_interval({noise.at(block), rest.at(block), variance.at(block), norm.at(block)});
+    SquaredError result{noise.at(block), rest.at(block), variance.at(block), norm.at(block)};
+    result.lowest_rest = -std::sqrt(bound.at(block));
+    return error_interval(result);
 }
 
 BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, const RelativeWeights& weights, int width,
@@ -103,8 +120,9 @@ BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, const Relativ
     for (std::size_t p = 0; p < pixels; ++p)
         sums[blocks.index_of(p, width)].add(weights.weight[p], halves, p);
     for (const Sums& block : sums) {
-        blocks.noise.push_back(0.25 * block.shown), blocks.rest.push_back(block.residuals);
+        blocks.noise.push_back(block.noise()), blocks.rest.push_back(block.residuals);
         blocks.variance.push_back(block.variance()), blocks.norm.push_back(block.norm);
+        blocks.bound.push_back(block.bound());
     }
     return blocks;
 }

@@ -22,19 +22,32 @@
 // bright passes many times; k is the weight of a pixel's own noise in what is shown of it, and o the noise of
 // other pixels. k, o and beta^2 are averages over blocks, (1 - 2 k)^2
 // one that is weighted by |a - b|^4: filters are not linear, and treat rare bright paths in a way of their
-// own. The sum is nearly normal, so Eq. (1) and (2) +- 1.96 s have 95 % confidence; no end is below the noise
-// that is known, and none above where s is not known. Where a few bright paths make up the error, s has a
-// long tail: it is mostly below what it is on average, and the interval contains the error less often.
+// own. The sum is nearly normal, so Eq. (1) and (2) +- 1.96 s have 95 % confidence; the upper end is not
+// below the noise that is known, and there is none where s is not known. Where a few bright paths make up the
+// error, s has a long tail: it is mostly below what it is on average, and the interval contains the error
+// less often.
+//
+// The rest <e_a, e_b> has the square of a bias for its mean, which is not below 0. That of one picture may
+// be, by the noise that is left: n_a and n_b without bias make |(n_a + n_b) / 2|^2 of it, which varies as the
+// known |n_a - n_b|^2 / 4 does. Where noise moves 16 pixels together, as filters leave it, it has 16 degrees
+// of freedom in a block; the difference of both then has half the noise for its standard deviation. What a
+// pixel keeps of its own noise varies by k^2 sqrt(v_a v_b). So, by two deviations of one and four of the
+// other,
+//
+//   sum w <e_a, e_b> > -sqrt(sum N^2 + sum w^2 16 k^4 v_a v_b),  N = sum w |f_a - f_b|^2 / 4 of a block, (4)
+//
+// and the interval is that of a bounded mean (bounded_interval.h). Without a filter k is 1, the bound four s
+// below 0, and the interval without it the same.
 //
 // Weights are relative to the light of a pixel, which is known with noise as well. With W_a and W_b, those of
 // either half by itself, a block has the sums X_a and X_b; they differ by twice the standard error of their
-// mean, and (X_a - X_b)^2 / 4 is added to s^2 (4).
+// mean, and (X_a - X_b)^2 / 4 is added to s^2 (5).
 //
 // A rule that ends a render as soon as the upper end is low enough tests it after many numbers of passes, and
 // ends where the rest is lowest by chance: with few passes, far below zero. The square of a bias is not, so
 // the upper end for rules is
 //
-//   noise + max(0, rest) + 2.24 s,                                                                      (5)
+//   noise + max(0, rest) + 2.24 s,                                                                      (6)
 //
 // which is low only where s is small. Tests that follow each other share most of their passes: all that
 // matter are taken for two, each of which may fail half as often (Bonferroni).
@@ -46,6 +59,7 @@
 #include <span>
 #include <vector>
 
+#include "core/metrics/bounded_interval.h"
 #include "core/metrics/relative_error.h"
 
 namespace mote::core {
@@ -60,13 +74,11 @@ struct PictureError {
     double error = std::numeric_limits<double>::infinity();  ///< infinity: not known
     double low = 0.0;                                        ///< end of the interval
     double high = std::numeric_limits<double>::infinity();   ///< end of the interval
-    /// Upper end for a rule that is evaluated again and again, Eq. (5); nowhere below `high`.
+    /// Upper end for a rule that is evaluated again and again, Eq. (6); nowhere below `high`.
     double rule_high = std::numeric_limits<double>::infinity();
     /// One error from those by several kinds of weights: its interval holds all of theirs.
     static PictureError of_all(std::initializer_list<PictureError> errors);
 };
-
-inline constexpr double normal_quantile = 1.96;  ///< 95 % of the normal distribution are within
 
 /// Squared error in the measure of Eq. (2) of relative_error.h, before it is divided by the norm.
 struct SquaredError {
@@ -76,6 +88,8 @@ struct SquaredError {
     double norm = 0.0;      ///< sum w |r|^2
     /// What the variance has more where the mean of `rest` is at the upper end.
     double more_above = 0.0;
+    /// The true rest is not below this, Eq. (4).
+    double lowest_rest = -std::numeric_limits<double>::infinity();
 };
 
 /// Interval of 95 % confidence; not known without a norm or a finite variance.
@@ -89,6 +103,7 @@ struct BlockErrors {
     std::vector<double> rest;        ///< sum w <r_a, r_b> of a block, Eq. (2)
     std::vector<double> variance;    ///< of that sum, Eq. (3)
     std::vector<double> norm;        ///< sum w <a, b> of a block, whose mean is that of |r|^2
+    std::vector<double> bound;       ///< square of how far the true rest may be below 0, Eq. (4)
 
     std::size_t index_of(std::size_t pixel, int width) const;  ///< of the block of a pixel
     SquaredError sum() const;                                  ///< of all blocks together
@@ -100,7 +115,7 @@ struct BlockErrors {
 BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, const RelativeWeights& weights, int width,
                          int height);
 
-/// Adds Eq. (4) to the variance of each block of halves_error(): what noise in the weights does to its sums.
+/// Adds Eq. (5) to the variance of each block of halves_error(): what noise in the weights does to its sums.
 /// `weights`: of the passes of either half.
 void add_variance_of_weights(BlockErrors& blocks, const std::array<PictureHalf, 2>& halves,
                              const std::array<RelativeWeights, 2>& weights, int width);

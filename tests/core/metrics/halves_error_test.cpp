@@ -86,7 +86,7 @@ struct Passes {
 
 /// Shares of renders that a limit on an end of the interval has ended although their error is above it.
 struct Broken {
-    double by_interval = 0.0;  ///< limit on PictureError::high
+    double by_interval = 0.0;  ///< limit on the upper end of an interval that is evaluated once
     double by_rule = 0.0;      ///< limit on PictureError::rule_high
 };
 
@@ -110,11 +110,12 @@ Broken broken_limits(std::uint64_t seeds) {
                 picture[p] = 0.5f * (fa[p] + fb[p]);
                 variance[p] = sqr(Passes::loud * deviation(p)) * mu[p] * mu[p] / (0.5f * float(n));
             }
-            const PictureError said =
-                halves_error({PictureHalf{a, fa, variance}, PictureHalf{b, fb, variance}}, weights, width,
-                             height)
-                    .of_picture();
-            by_interval |= said.high <= limit, by_rule |= said.rule_high <= limit;
+            SquaredError said = halves_error({PictureHalf{a, fa, variance}, PictureHalf{b, fb, variance}},
+                                             weights, width, height)
+                                    .sum();
+            by_rule |= error_interval(said).rule_high <= limit;
+            said.lowest_rest = -std::numeric_limits<double>::infinity();  // the rest is as low as it seems
+            by_interval |= error_interval(said).high <= limit;
         }
         broken.by_interval += by_interval ? 1.0 / double(seeds) : 0.0;
         broken.by_rule += by_rule ? 1.0 / double(seeds) : 0.0;
