@@ -82,8 +82,7 @@ double projection(const core::PassImage& image, const core::Film& film, std::siz
             finite = finite && core::is_finite(image.layer(layer)[p]);
             if (!film.layers()[layers[layer]].auxiliary) sum += image.layer(layer)[p];
         }
-        const glm::dvec3 r(reference.pixels[p]);
-        if (finite) total += reference.weights.weight[p] * glm::dot(r, glm::dvec3(sum)) / 3.0;
+        if (finite) total += reference.weights.weight[p] * core::mean_product(reference.pixels[p], sum);
     }
     return total / reference.weights.norm;
 }

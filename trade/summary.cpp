@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/metrics/metrics.h"
 #include "session/number_or_null.h"
 #include "trade/draw.h"
 
@@ -64,6 +65,14 @@ json method_json(const Results& results, const Curve& c) {
             {"on_front", !results.front_text(c).empty()},
             {"time_to_reach", reach},
             {"points", points_json(c)}};
+}
+
+std::string definition_of_error() {
+    const auto metrics = core::metric_definitions();
+    const auto error = std::find_if(metrics.begin(), metrics.end(), [](const core::MetricDefinition& m) {
+        return std::string_view(m.name) == "error";
+    });
+    return fmt::format("{}; d = image - reference r; in points the mean over seeds", error->definition);
 }
 
 }  // namespace
@@ -127,11 +136,7 @@ json summary_json(const Results& results) {
         {"facts", results.facts},
         {"complete", results.complete},
         {"definitions",
-         {{"error",
-           "square root of sum w |d|^2 / sum w |r|^2, without the reference's own noise; |x|^2 is the mean "
-           "over channels, d = image - reference r, w = 1 / (l + m / 100), l = max(|r'|^2, |r|^2 / 4), r' "
-           "the mean of the 5 x 5 pixels around without the pixel itself, m the median of l where it is "
-           "not 0; in points the mean over seeds"},
+         {{"error", definition_of_error()},
           {"error_se",
            "standard error of error from the noise of the reference, which all seeds share, and with two "
            "seeds or more from their spread"},

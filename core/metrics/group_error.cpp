@@ -37,8 +37,7 @@ Picture mean_of(std::span<const PassGroup> groups) {
 
 double product(const RelativeWeights& w, std::span<const Rgb> a, std::span<const Rgb> b) {
     double sum = 0.0;
-    for (std::size_t p = 0; p < a.size(); ++p)
-        sum += w.weight[p] * glm::dot(glm::dvec3(a[p]), glm::dvec3(b[p])) / 3.0;
+    for (std::size_t p = 0; p < a.size(); ++p) sum += w.weight[p] * mean_product(a[p], b[p]);
     return w.norm > 0.0 ? sum / w.norm : 0.0;
 }
 

@@ -32,7 +32,7 @@ struct Sums {
         const double va = mean_of_channels(halves[0].variance[p]),
                      vb = mean_of_channels(halves[1].variance[p]);
         v += w * (va + vb), v_squared += w * va * w * vb, pixels += 1.0;
-        norm += w * glm::dot(glm::dvec3(a), glm::dvec3(b)) / 3.0;
+        norm += w * mean_product(a, b);
     }
     double k() const { return raw > 0.0 ? both / raw : 0.0; }
     double noise() const { return 0.25 * shown; }

@@ -26,17 +26,16 @@ RelativeError relative_error(std::span<const Rgb> image, const ReferencePair& pa
     RelativeWeights weights = relative_weights(mean.picture, mean.variance, width, height);
     weights.norm = 0.0;  // that of the products, whatever is known of variances
     for (std::size_t p = 0; p < mean.picture.size(); ++p)
-        weights.norm +=
-            weights.weight[p] * glm::dot(glm::dvec3(pair.first[p]), glm::dvec3(pair.second[p])) / 3.0;
+        weights.norm += weights.weight[p] * mean_product(pair.first[p], pair.second[p]);
     RelativeError result = relative_error(image, mean.picture, weights, image_variance, mean.variance);
     if (!(weights.norm > 0.0)) return result;
     double error = 0.0, bias = 0.0, variance = 0.0;
     for (std::size_t p = 0; p < image.size(); ++p) {
         const double w = weights.weight[p];
         const glm::dvec3 x(image[p]), a(pair.first[p]), b(pair.second[p]);
-        const double product = glm::dot(x - a, x - b) / 3.0;
+        const double product = mean_product(x - a, x - b);
         error += w * product, variance += w * w * product * product;
-        bias += w * 0.5 * (glm::dot(a, x - b) + glm::dot(b, x - a)) / 3.0;
+        bias += w * 0.5 * (mean_product(a, x - b) + mean_product(b, x - a));
     }
     result.bias = bias / weights.norm;
     const double squared = std::max(error / weights.norm, result.bias * result.bias);

@@ -121,7 +121,7 @@ RelativeError relative_error(std::span<const Rgb> image, std::span<const Rgb> re
         const double w = weights.weight[p];
         const glm::dvec3 r(reference[p]), d = glm::dvec3(image[p]) - r;
         const double square = mean_square(d);
-        error += w * square, bias += w * glm::dot(r, d) / 3.0;
+        error += w * square, bias += w * mean_product(r, d);
         if (!image_variance.empty()) {
             noise += w * mean_of_channels(image_variance[p]);
             bias_variance += w * w * variance_of_product(reference[p], image_variance[p]);

@@ -21,11 +21,13 @@
 
 namespace mote::core {
 
+/// <a, b>, averaged over channels.
+inline double mean_product(const glm::dvec3& a, const glm::dvec3& b) { return glm::dot(a, b) / 3.0; }
 /// |c|^2
-inline double mean_square(const glm::dvec3& c) { return glm::dot(c, c) / 3.0; }
+inline double mean_square(const glm::dvec3& c) { return mean_product(c, c); }
 /// (a - b) (c - d), averaged over channels.
 inline double product_of_differences(const Rgb& a, const Rgb& b, const Rgb& c, const Rgb& d) {
-    return glm::dot(glm::dvec3(a) - glm::dvec3(b), glm::dvec3(c) - glm::dvec3(d)) / 3.0;
+    return mean_product(glm::dvec3(a) - glm::dvec3(b), glm::dvec3(c) - glm::dvec3(d));
 }
 inline double mean_of_channels(const Rgb& c) { return (double(c.x) + double(c.y) + double(c.z)) / 3.0; }
 

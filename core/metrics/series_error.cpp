@@ -71,7 +71,7 @@ void ErrorMeasure::count(std::span<const std::uint8_t> counted) {
         }
         ++counted_;
         const double noise = subtracted_.empty() ? 0.0 : subtracted_[p];
-        norm_ += weight_[p] * (glm::dot(glm::dvec3(a_[p]), glm::dvec3(b_[p])) / 3.0 - noise);
+        norm_ += weight_[p] * (mean_product(a_[p], b_[p]) - noise);
     }
     if (!(norm_ > 0.0)) norm_ = unknown;
 }
@@ -80,13 +80,13 @@ double ErrorMeasure::product(std::span<const Rgb> x, std::span<const Rgb> y, std
     if (!(weight_[p] > 0.0)) return 0.0;
     const glm::dvec3 a(a_[p]), b(b_[p]), u(x[p]), v(y[p]);
     const double own = subtracted_.empty() ? 0.0 : subtracted_[p];
-    return weight_[p] * (0.5 * (glm::dot(u - a, v - b) + glm::dot(v - a, u - b)) / 3.0 - own);
+    return weight_[p] * (0.5 * (mean_product(u - a, v - b) + mean_product(v - a, u - b)) - own);
 }
 
 double ErrorMeasure::bias_at(std::span<const Rgb> x, std::size_t p) const {
     if (!(weight_[p] > 0.0)) return 0.0;
     const glm::dvec3 a(a_[p]), b(b_[p]), u(x[p]);
-    return weight_[p] * 0.5 * (glm::dot(a, u - b) + glm::dot(b, u - a)) / 3.0;
+    return weight_[p] * 0.5 * (mean_product(a, u - b) + mean_product(b, u - a));
 }
 
 std::vector<double> ErrorMeasure::pixel_errors(std::span<const Rgb> image) const {
