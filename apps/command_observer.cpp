@@ -54,7 +54,7 @@ void CommandObserver::show_coarse(const RenderSettings& settings) {
 bool CommandObserver::preview_is_seen() const {
     constexpr std::chrono::seconds long_render{30};
     return !arguments_.quiet || arguments_.seconds || viewer_ ||
-           std::chrono::steady_clock::now() - start_ > long_render;
+           (wants_previews() && std::chrono::steady_clock::now() - start_ > long_render);
 }
 
 void CommandObserver::warning(const std::string& text) {

@@ -26,8 +26,8 @@ class CommandObserver : public RenderObserver {
     bool cancelled() override { return interruption_.signal_number() != 0; }
     bool wants_previews() const override { return !preview_file_.empty() || viewer_; }
     void preview(const core::ImageChannels& image) override;
-    /// Without progress, previews are for a look into a long render. With a limit of time they are made as
-    /// always, since they measure how long the denoiser will take.
+    /// Without progress, previews are for a look into a long render, if there is a file for them. With a
+    /// limit of time they are made as always, since they measure how long the denoiser will take.
     bool preview_is_seen() const override;
     /// Where a picture of the whole is shown already, no part of it takes its place.
     bool previews_are_whole() const override { return showed_whole_; }

@@ -37,7 +37,8 @@ class RenderObserver {
     virtual bool first_preview_is_raw() const { return false; }
     /// True: none of a picture some of whose layers have no pass yet.
     virtual bool previews_are_whole() const { return false; }
-    /// Called in the thread of the passes: false spares the work of a preview.
+    /// Called in the thread of the passes: false spares the work of a preview, and of the noise of one in
+    /// progress().
     virtual bool preview_is_seen() const { return true; }
     virtual void warning(const std::string&) {}  ///< at once: a checkpoint that could not be written
     /// Called in the thread of the passes, before the first one: from now on an end loses something.

@@ -220,9 +220,10 @@ class PassLoop {
     }
     /// The film is afterwards as it was: which part is next must not depend on previews.
     void show_preview() {
+        const bool watched = !request_.preview_is_seen || request_.preview_is_seen();
         // The noise in reports of progress is that of the picture that a preview would show.
-        const bool for_the_noise = request_.progress && !rule_looks() && changes_noise();
-        const bool seen = request_.preview && (!request_.preview_is_seen || request_.preview_is_seen());
+        const bool for_the_noise = request_.progress && watched && !rule_looks() && changes_noise();
+        const bool seen = request_.preview && watched;
         if ((!seen && !for_the_noise) || is_done()) return;
         // After this time the passes are shown though some part of the picture is still black: as they are,
         // since to finish them would put off the others.

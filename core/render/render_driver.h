@@ -68,12 +68,13 @@ struct RenderRequest {
     /// some seconds those that have one (unless `previews_are_whole`), and then now and then; and its error,
     /// or nothing where that is not known. May be empty.
     std::function<void(const Film&, const std::optional<PictureError>&)> preview;
-    double preview_every_seconds = 1.0;     ///< shortest time between two of them
-    double preview_share = 0.05;            ///< of the time that they take at most
-    std::function<bool()> preview_is_seen;  ///< false: a preview would have no use now; empty: always true
-    bool first_preview_is_raw = false;      ///< at once, without Estimator::finish()
-    bool previews_are_whole = false;        ///< none of a picture some of whose parts have no pass
-    bool finish = true;                     ///< false: the picture is left as the passes made it
+    double preview_every_seconds = 1.0;  ///< shortest time between two of them
+    double preview_share = 0.05;         ///< of the time that they take at most
+    /// False: neither a preview nor its noise in `progress` would have a use now; empty: always true.
+    std::function<bool()> preview_is_seen;
+    bool first_preview_is_raw = false;  ///< at once, without Estimator::finish()
+    bool previews_are_whole = false;    ///< none of a picture some of whose parts have no pass
+    bool finish = true;                 ///< false: the picture is left as the passes made it
     std::function<void(const std::string&)> checkpoint_failed;  ///< called at once; retried later
     std::function<void()> building_is_over;           ///< called before the first pass; may be empty
     std::function<void()> passes_are_over;            ///< called before Estimator::finish; may be empty

@@ -1,5 +1,6 @@
 // Finished pictures of the driver: previews, interruptions, limits in time, and the noise.
 #include <chrono>
+#include <functional>
 #include <set>
 #include <thread>
 
@@ -211,6 +212,7 @@ namespace {
 /// Noise in one layer, of which a hundredth of the variance is left when it is finished.
 class FilteringEstimator final : public Estimator {
   public:
+    explicit FilteringEstimator(std::function<void()> in_finish = [] {}) : in_finish_(std::move(in_finish)) {}
     static std::vector<Layer> layers() { return {{"direct", "", false, true}}; }
     bool pass(const PassContext& context, PassImage& image) override {
         std::uint64_t i = 0;
@@ -219,11 +221,15 @@ class FilteringEstimator final : public Estimator {
         return true;
     }
     void finish(Film& film, CancelToken) override {
+        in_finish_();
         std::vector<float> left;
         for (const Rgb& v : film.layer_variance_of_mean(0)) left.push_back(0.01f * average(v));
         film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(1.0f)), left);
     }
     bool changes_noise(const Film&) const override { return true; }
+
+  private:
+    std::function<void()> in_finish_;
 };
 using FilteringIntegrator = IntegratorOf<FilteringEstimator>;
 
@@ -250,6 +256,16 @@ TEST_CASE("the noise that is stated is that of the finished picture", "[driver][
     REQUIRE(reported.size() == 20);
     for (std::uint32_t i = 1; i < 20; ++i)
         CHECK((std::isinf(reported[i]) || reported[i] < 0.5 * 10.0 * expected(i + 1)));
+    // Where previews are not seen, no picture is finished for the reports either.
+    const auto finishes = [&] {
+        int count = 0;
+        CHECK(render(*scene, FilteringIntegrator([&] { ++count; }), request).film.noise() ==
+              result.film.noise());
+        return count;
+    };
+    CHECK(finishes() > 1);
+    request.preview_is_seen = [] { return false; };
+    CHECK(finishes() == 1);
 
     // The rule evaluates it after 8, 10, 12, 14, 16, 20, 24, ... passes, whatever else evaluates it.
     RenderRequest rule = request_for(1000);
