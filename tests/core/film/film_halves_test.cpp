@@ -1,41 +1,27 @@
 // The error that the halves of Sobol points state (core/film/film_halves.cpp): as certain as their gain is.
 #include <cmath>
 
-#include "core/film/film.h"
-#include "core/math/sampler.h"
 #include "core/metrics/relative_error.h"
+#include "tests/core/film/steps.h"
 #include "tests/support/catch.h"
 
 using namespace mote::core;
+using namespace mote::tests;
 
 namespace {
 
 constexpr int size = 32;
 constexpr std::size_t pixels = size * size;
-
-/// Light of pixels that is a step at a place between 0.1 and 0.9, on a constant.
-float edge(std::size_t pixel) { return 0.1f + 0.8f * to_unit_float(std::uint32_t(hash_keys(7, pixel))); }
-float light(float u, std::size_t pixel) { return u < edge(pixel) ? 3.0f : 2.0f; }
-
-Film film_of(SamplerKind kind, std::uint32_t passes, std::uint64_t seed) {
-    Film film(size, size, {{"all", ""}}, false, PassSplit::halves);
-    for (std::uint32_t i = 0; i < passes; ++i) {
-        PassImage image(size, size, 1);
-        for (std::size_t p = 0; p < pixels; ++p)
-            image.layer(0)[p] = Rgb(light(Sampler(kind, seed, i, p).next_1d(), p));
-        film.add_pass(image);
-    }
-    return film;
-}
+constexpr float constant = 2.0f;
 
 /// Stated squared error less the true one, over its standard error: root mean square over seeds.
 double surprise(SamplerKind kind, std::uint32_t passes, std::uint64_t seeds) {
     std::vector<Rgb> truth(pixels);
-    for (std::size_t p = 0; p < pixels; ++p) truth[p] = Rgb(2.0f + edge(p));
+    for (std::size_t p = 0; p < pixels; ++p) truth[p] = Rgb(constant + step_of(p));
     const RelativeWeights weights = relative_weights(truth, size, size);
     double sum = 0.0;
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const Film film = film_of(kind, passes, seed);
+        const Film film = film_of_steps(size, constant, kind, seed, passes, PassSplit::halves);
         const auto said = film.error();
         REQUIRE(said);
         const double error = relative_error(film.beauty(), truth, weights).error;

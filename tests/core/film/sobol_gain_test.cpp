@@ -4,12 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include "core/film/film.h"
-#include "core/math/random.h"
-#include "core/math/sampler.h"
+#include "tests/core/film/steps.h"
 #include "tests/support/catch.h"
 
 using namespace mote::core;
+using namespace mote::tests;
 
 namespace {
 
@@ -37,22 +36,12 @@ struct Compared {
 };
 
 Compared steps(SamplerKind kind, std::uint32_t passes) {
-    constexpr int width = 64, pixels = width * width;
-    Film film(width, width, {{"all", ""}});
-    const auto edge = [](int p) { return 0.1f + 0.8f * to_unit_float(std::uint32_t(hash_keys(7, p))); };
-    for (std::uint32_t pass = 0; pass < passes; ++pass) {
-        PassImage image(width, width, 1);
-        for (int p = 0; p < pixels; ++p) {
-            Sampler sampler(kind, 3, pass, std::uint64_t(p));
-            // On a constant, so that the weights of the noise are alike.
-            image.layer(0)[std::size_t(p)] = Rgb(sampler.next_1d() < edge(p) ? 101.0f : 100.0f);
-        }
-        film.add_pass(image);
-    }
+    // On a constant that is large, so that the weights of the noise are alike.
+    const Film film = film_of_steps(64, 100.0f, kind, 3, passes, PassSplit::whole);
     Compared result;
     const std::vector<Rgb> mean = film.beauty();
-    for (int p = 0; p < pixels; ++p)
-        result.error += std::pow(double(mean[std::size_t(p)].x) - 100.0 - double(edge(p)), 2.0) / pixels;
+    for (std::size_t p = 0; p < mean.size(); ++p)
+        result.error += std::pow(double(mean[p].x) - 100.0 - double(step_of(p)), 2.0) / double(mean.size());
     result.said = std::pow(film.noise() * 100.5, 2.0);
     return result;
 }

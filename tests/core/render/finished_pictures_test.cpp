@@ -256,6 +256,15 @@ TEST_CASE("the noise that is stated is that of the finished picture", "[driver][
     REQUIRE(reported.size() == 20);
     for (std::uint32_t i = 1; i < 20; ++i)
         CHECK((std::isinf(reported[i]) || reported[i] < 0.5 * 10.0 * expected(i + 1)));
+    // Known after half a second, by a preview before.
+    RenderRequest slow = request_for(5);
+    slow.progress = request.progress, reported.clear();
+    slow.preview = [](const Film&, const auto&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    };
+    slow.preview_every_seconds = 0.0, slow.preview_share = 1e9;
+    render(*scene, FilteringIntegrator(), slow);
+    CHECK(reported.back() == Approx(expected(5)).epsilon(within));
     // Where previews are not seen, no picture is finished for the reports either.
     const auto finishes = [&] {
         int count = 0;
